@@ -1,0 +1,10 @@
+find_path(PATINA_OSD_INCLUDE opensubdiv/version.h)
+find_library(PATINA_OSD_CPU osdCPU)
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(PatinaOpenSubdiv REQUIRED_VARS PATINA_OSD_CPU PATINA_OSD_INCLUDE)
+if(PatinaOpenSubdiv_FOUND AND NOT TARGET Patina::OpenSubdiv)
+  add_library(Patina::OpenSubdiv UNKNOWN IMPORTED)
+  set_target_properties(Patina::OpenSubdiv PROPERTIES
+    IMPORTED_LOCATION "${PATINA_OSD_CPU}" INTERFACE_INCLUDE_DIRECTORIES "${PATINA_OSD_INCLUDE}")
+endif()
+mark_as_advanced(PATINA_OSD_INCLUDE PATINA_OSD_CPU)

@@ -1,0 +1,10 @@
+find_path(PATINA_XXHASH_INCLUDE xxhash.h)
+find_library(PATINA_XXHASH xxhash)
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(PatinaXxHash REQUIRED_VARS PATINA_XXHASH PATINA_XXHASH_INCLUDE)
+if(PatinaXxHash_FOUND AND NOT TARGET Patina::xxHash)
+  add_library(Patina::xxHash UNKNOWN IMPORTED)
+  set_target_properties(Patina::xxHash PROPERTIES
+    IMPORTED_LOCATION "${PATINA_XXHASH}" INTERFACE_INCLUDE_DIRECTORIES "${PATINA_XXHASH_INCLUDE}")
+endif()
+mark_as_advanced(PATINA_XXHASH_INCLUDE PATINA_XXHASH)

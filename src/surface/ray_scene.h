@@ -1,0 +1,41 @@
+#pragma once
+// Rays against a triangle mesh (Embree).
+
+#include "surface/mesh.h"
+
+#include <limits>
+#include <memory>
+#include <optional>
+
+namespace patina {
+
+/// Immutable after construction; every query is safe from any thread.
+class RayScene {
+  public:
+    RayScene(const std::vector<Imath::V3f>& positions, const std::vector<Imath::V3i>& triangles);
+    ~RayScene();
+    RayScene(RayScene&&) noexcept;
+    RayScene& operator=(RayScene&&) noexcept;
+
+    struct Hit {
+        SurfacePoint point;
+        float distance;
+        Imath::V3f geometricNormal; ///< not normalised, by the triangle's winding
+    };
+    std::optional<Hit> intersect(const Imath::V3f& origin, const Imath::V3f& direction, float nearest = 0.f,
+                                 float farthest = std::numeric_limits<float>::infinity()) const;
+    bool occluded(const Imath::V3f& origin, const Imath::V3f& direction, float nearest, float farthest) const;
+
+    struct Closest {
+        SurfacePoint point;
+        float distance;
+    };
+    std::optional<Closest> closest(const Imath::V3f& position,
+                                   float radius = std::numeric_limits<float>::infinity()) const;
+
+  private:
+    struct Scene;
+    std::unique_ptr<Scene> scene_;
+};
+
+} // namespace patina
