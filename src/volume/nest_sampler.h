@@ -1,0 +1,53 @@
+#pragma once
+// Trilinear reading of the whole nest at once. The grids share one topology, so a cell's eight corners are found once
+// and every interface is then eight loads away. Includes OpenVDB: for volume/, operators/ and export/ sources.
+
+#include "volume/nest_grids.h"
+
+#include <Imath/ImathVec.h>
+
+#include <array>
+#include <vector>
+
+namespace patina {
+
+/// Eight corners of a lattice cell and where in it a point lies. Positions are in voxels (index space).
+struct NestCell {
+    std::array<std::int32_t, 8> leaf; ///< leaf index, or -1 outside, -2 inside the band's far sides
+    std::array<std::int16_t, 8> voxel;
+    double x, y, z; ///< 0…1 within the cell
+};
+
+/// A read-only view of a volume; valid while its grids are neither moved nor re-allocated. Safe from any thread.
+class NestSampler {
+  public:
+    explicit NestSampler(const NestGrids& grids);
+
+    int interfaceCount() const { return static_cast<int>(buffers_.size()); } ///< n + 1: base and interfaces
+
+    /// The cell around a point given in voxels.
+    NestCell locate(const Imath::V3d& point) const;
+
+    /// phi_k at the located point, scene units, in double.
+    double value(int k, const NestCell& cell) const;
+
+    /// phi_k and its gradient within the cell (scene units per voxel).
+    double valueAndGradient(int k, const NestCell& cell, Imath::V3d& gradient) const;
+
+    /// phi_k at a lattice point.
+    float voxel(int k, const openvdb::Coord& coord) const;
+
+    /// Central difference of phi_k at a lattice point, scene units per voxel.
+    Imath::V3d centralGradient(int k, const openvdb::Coord& coord) const;
+
+  private:
+    std::int32_t leafAt(int i, int j, int k) const; ///< leaf coordinates (voxels / 8)
+    void corners(int k, const NestCell& cell, double* c) const;
+
+    openvdb::Coord low_, size_;
+    std::vector<std::int32_t> leafIndex_;
+    std::vector<std::vector<const float*>> buffers_; ///< [k][leaf]
+    std::vector<float> background_;
+};
+
+} // namespace patina

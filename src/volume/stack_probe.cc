@@ -1,0 +1,108 @@
+#include "volume/stack_probe.h"
+
+#include "volume/nest_sampler.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace patina {
+
+struct StackProbe::Nest {
+    NestSampler sampler;
+    VolumeScale scale;
+    int layers;
+    double reach; ///< voxels outside the base where a surface may be
+
+    // phi_k along the line, in voxels (phi / voxelSize), and its slope.
+    double along(int k, const Imath::V3d& origin, const Imath::V3d& direction, double s, double& slope) const {
+        Imath::V3d gradient;
+        const double phi = sampler.valueAndGradient(k, sampler.locate(origin + direction * s), gradient);
+        slope = gradient.dot(direction) / scale.voxelSize;
+        return phi / scale.voxelSize;
+    }
+
+    // The first outward crossing of phi_k in [from, to], phi_k(from) <= 0 assumed; `to` where there is none.
+    // Newton with a bracket: along a line the trilinear field is a cubic within each cell and kinked between cells.
+    double crossing(int k, const Imath::V3d& origin, const Imath::V3d& direction, double from, double to) const {
+        double slope = 0.0;
+        double low = from;
+        double f = along(k, origin, direction, from, slope);
+        if (f >= 0.0)
+            return from;
+        double high = to;
+        bool bracketed = false;
+        double s = from;
+        for (int iteration = 0; iteration < 60; ++iteration) {
+            double next = slope > 0.05 ? s - f / slope : s + 0.5;
+            if (bracketed) {
+                if (!(next > low && next < high))
+                    next = 0.5 * (low + high);
+            } else {
+                // Outward in steps of at most half a voxel, so that no crossing is stepped over.
+                next = std::min({next, s + 0.5, to});
+                if (next <= s)
+                    return to;
+            }
+            if (std::abs(next - s) <= 1e-12 * std::max(1.0, std::abs(s)))
+                return next;
+            s = next;
+            f = along(k, origin, direction, s, slope);
+            if (f == 0.0)
+                return s;
+            if (f > 0.0) {
+                high = s;
+                bracketed = true;
+            } else {
+                low = s;
+                if (!bracketed && s >= to)
+                    return to;
+            }
+            if (bracketed && high - low < 1e-13)
+                return s;
+        }
+        return s;
+    }
+};
+
+StackProbe::StackProbe(const LayerVolume& volume)
+    : nest_(new Nest{NestSampler(volume.grids()), volume.scale(), volume.layerCount(), volume.grids().exteriorBand + 2.0}) {}
+StackProbe::~StackProbe() = default;
+StackProbe::StackProbe(StackProbe&&) noexcept = default;
+
+int StackProbe::layerCount() const { return nest_->layers; }
+
+StackProbe::Reading StackProbe::read(const Imath::V3d& point, const Imath::V3d& normal, double* thicknessUm) const {
+    const Nest& nest = *nest_;
+    const VolumeScale& scale = nest.scale;
+    const Imath::V3d origin = point / scale.voxelSize;
+    Reading reading;
+    std::fill(thicknessUm, thicknessUm + nest.layers, 0.0);
+
+    // The base lies within the voxelisation error of the point: walk inward until inside, then outward to the crossing.
+    double slope = 0.0;
+    double start = 0.0;
+    double f = nest.along(0, origin, normal, start, slope);
+    while (f > 0.0 && start > -2.0) {
+        start -= std::clamp(f * 1.5, 0.02, 0.5);
+        f = nest.along(0, origin, normal, start, slope);
+    }
+    if (f > 0.0)
+        return reading;
+    const double limit = 2.0;
+    double below = nest.crossing(0, origin, normal, start, limit);
+    if (below >= limit)
+        return reading;
+    reading.found = true;
+    reading.baseOffset = below * scale.voxelSize;
+    const double base = below;
+    const double umPerVoxel = 1.0 / scale.voxelsPerUm();
+    for (int k = 1; k <= nest.layers; ++k) {
+        const double crossing = std::max(below, nest.crossing(k, origin, normal, below, base + nest.reach));
+        thicknessUm[k - 1] = (crossing - below) * umPerVoxel;
+        below = crossing;
+    }
+    reading.height = (below - base) * scale.voxelSize;
+    return reading;
+}
+
+} // namespace patina

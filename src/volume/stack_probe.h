@@ -1,0 +1,38 @@
+#pragma once
+// The stack along a normal: where each interface of the nest crosses it.
+
+#include "volume/layer_volume.h"
+
+#include <Imath/ImathVec.h>
+
+#include <memory>
+
+namespace patina {
+
+/// Reads thicknesses along the normal of the base surface (DESIGN: differences of crossings along the *same* line, so that
+/// voxelisation errors larger than the patina cancel). Valid while the volume is unchanged; safe from any thread.
+class StackProbe {
+  public:
+    explicit StackProbe(const LayerVolume& volume);
+    ~StackProbe();
+    StackProbe(StackProbe&&) noexcept;
+
+    struct Reading {
+        bool found = false;      ///< whether the base was crossed near the point
+        double baseOffset = 0.0; ///< signed distance from the point to the base crossing, scene units
+        double height = 0.0;     ///< surface minus base along the normal, scene units as drawn (exaggerated)
+    };
+
+    /// \param point   on the base surface, scene units; the base must cross within 2 voxels of it
+    /// \param normal  outward, unit
+    /// \param thicknessUm  receives each layer's thickness in real µm, bottom to top (layerCount() values, all >= 0)
+    Reading read(const Imath::V3d& point, const Imath::V3d& normal, double* thicknessUm) const;
+
+    int layerCount() const;
+
+  private:
+    struct Nest;
+    std::unique_ptr<Nest> nest_;
+};
+
+} // namespace patina

@@ -1,0 +1,202 @@
+#include "volume/vdb_file.h"
+
+#include "base/atomic_file.h"
+#include "base/errors.h"
+#include "volume/nest_grids.h"
+
+#include <fmt/format.h>
+
+#include <sstream>
+
+namespace patina {
+
+namespace {
+
+constexpr int formatVersion = 1;
+
+std::string join(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words)
+        text += (text.empty() ? "" : ",") + word;
+    return text;
+}
+
+std::vector<std::string> split(const std::string& text) {
+    std::vector<std::string> words;
+    std::istringstream in(text);
+    for (std::string word; std::getline(in, word, ',');)
+        words.push_back(word);
+    return words;
+}
+
+// A view that shares the tree, so that naming and metadata of a file touch nothing of the volume.
+template <typename Grid>
+openvdb::GridBase::Ptr named(const Grid& grid, const std::string& name, openvdb::GridClass gridClass) {
+    auto view = std::make_shared<Grid>(const_cast<Grid&>(grid), openvdb::ShallowCopy());
+    view->setName(name);
+    view->setGridClass(gridClass);
+    view->setCreator("vdb-patina");
+    view->setSaveFloatAsHalf(false);
+    return view;
+}
+
+template <typename Value> Value required(const openvdb::MetaMap& meta, const std::string& key, const std::string& file) {
+    const auto found = meta.getMetadata<openvdb::TypedMetadata<Value>>(key);
+    if (!found)
+        throw RunError(file, fmt::format("has no metadata '{}'", key), "was this file written by vdb-patina run?");
+    return found->value();
+}
+
+std::string optionalText(const openvdb::MetaMap& meta, const std::string& key) {
+    const auto found = meta.getMetadata<openvdb::StringMetadata>(key);
+    return found ? found->value() : std::string();
+}
+
+template <typename Grid>
+typename Grid::Ptr requiredGrid(openvdb::GridPtrVec& grids, const std::string& name, const std::string& file) {
+    for (auto& grid : grids)
+        if (grid->getName() == name) {
+            if (auto typed = openvdb::gridPtrCast<Grid>(grid))
+                return typed;
+            throw RunError(file, fmt::format("grid '{}' holds {} where {} was expected", name, grid->valueType(),
+                                             Grid().valueType()));
+        }
+    throw RunError(file, fmt::format("has no grid '{}'", name), "was this file written by vdb-patina run?");
+}
+
+} // namespace
+
+void initializeVolumes() { openvdb::initialize(); }
+
+void writeVolume(const LayerVolume& volume, const std::filesystem::path& path) {
+    const NestGrids& grids = volume.grids();
+    openvdb::GridPtrVec out;
+    out.push_back(named(*grids.base, "base", openvdb::GRID_LEVEL_SET));
+    out.push_back(named(grids.surface(), "surface", openvdb::GRID_LEVEL_SET));
+    for (int k = 1; k <= volume.layerCount(); ++k)
+        out.push_back(named(*grids.interfaces[k - 1], volume.interfaceGridName(k), openvdb::GRID_LEVEL_SET));
+    out.push_back(named(*grids.material, "material", openvdb::GRID_UNKNOWN));
+    for (const auto& [name, field] : grids.fields)
+        out.push_back(named(*field, name, openvdb::GRID_UNKNOWN));
+
+    openvdb::MetaMap meta;
+    const LayerVolume::Provenance& from = volume.provenance;
+    meta.insertMeta("creator", openvdb::StringMetadata("vdb-patina " + from.program));
+    meta.insertMeta("patina_format", openvdb::Int32Metadata(formatVersion));
+    meta.insertMeta("patina_version", openvdb::StringMetadata(from.program));
+    meta.insertMeta("patina_script", openvdb::StringMetadata(from.script));
+    meta.insertMeta("patina_script_name", openvdb::StringMetadata(from.scriptName));
+    meta.insertMeta("patina_model", openvdb::StringMetadata(from.model));
+    meta.insertMeta("patina_model_hash", openvdb::StringMetadata(from.modelHash));
+    meta.insertMeta("patina_seed", openvdb::StringMetadata(std::to_string(from.seed)));
+    meta.insertMeta("patina_voxel_size", openvdb::DoubleMetadata(volume.scale().voxelSize));
+    meta.insertMeta("patina_metres_per_unit", openvdb::DoubleMetadata(volume.scale().metresPerUnit));
+    meta.insertMeta("patina_exaggeration", openvdb::DoubleMetadata(volume.scale().exaggeration));
+    meta.insertMeta("patina_palette", openvdb::StringMetadata(join(volume.palette())));
+    meta.insertMeta("patina_layers", openvdb::StringMetadata(join(volume.layers())));
+    meta.insertMeta("patina_interior_band", openvdb::DoubleMetadata(grids.interiorBand));
+    meta.insertMeta("patina_exterior_band", openvdb::DoubleMetadata(grids.exteriorBand));
+    // On every grid too: Houdini and Blender show a grid's metadata, not a file's.
+    for (auto& grid : out)
+        for (auto item = meta.beginMeta(); item != meta.endMeta(); ++item)
+            if (item->first != "creator" && item->first != "patina_script")
+                grid->insertMeta(item->first, *item->second);
+
+    AtomicFile file(path);
+    try {
+        openvdb::io::File vdb(file.temporary().string());
+        vdb.setInstancingEnabled(false); // `surface` shares its tree with the last interface; readers want both whole
+        vdb.write(out, meta);
+        vdb.close();
+    } catch (const openvdb::Exception& failure) {
+        throw RunError(path.string(), fmt::format("cannot write the volume: {}", failure.what()), "is the disk full?");
+    }
+    file.commit();
+}
+
+LayerVolume readVolume(const std::filesystem::path& path) {
+    const std::string file = path.string();
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored))
+        throw RunError(file, "there is no such file");
+    openvdb::GridPtrVecPtr read;
+    openvdb::MetaMap::Ptr meta;
+    try {
+        openvdb::io::File vdb(file);
+        vdb.open(/*delayLoad=*/false);
+        read = vdb.getGrids();
+        meta = vdb.getMetadata();
+        vdb.close();
+    } catch (const std::exception& failure) {
+        throw RunError(file, fmt::format("cannot be read as a volume: {}", failure.what()), "is it a whole .vdb file?");
+    }
+    const int format = required<openvdb::Int32>(*meta, "patina_format", file);
+    if (format != formatVersion)
+        throw RunError(file, fmt::format("is of format {}, this program reads format {}", format, formatVersion));
+
+    VolumeScale scale;
+    scale.voxelSize = required<double>(*meta, "patina_voxel_size", file);
+    scale.metresPerUnit = required<double>(*meta, "patina_metres_per_unit", file);
+    scale.exaggeration = required<double>(*meta, "patina_exaggeration", file);
+    const auto palette = split(required<std::string>(*meta, "patina_palette", file));
+    const auto layers = split(required<std::string>(*meta, "patina_layers", file));
+    if (palette.size() < 2 || !(scale.voxelSize > 0.0) || !(scale.metresPerUnit > 0.0) || !(scale.exaggeration > 0.0))
+        throw RunError(file, "its patina_… metadata are damaged");
+
+    auto grids = std::make_unique<NestGrids>();
+    grids->interiorBand = required<double>(*meta, "patina_interior_band", file);
+    grids->exteriorBand = required<double>(*meta, "patina_exterior_band", file);
+    grids->base = requiredGrid<openvdb::FloatGrid>(*read, "base", file);
+    auto material = requiredGrid<openvdb::Int32Grid>(*read, "material", file);
+    NestGrids* raw = grids.get();
+    LayerVolume volume(scale, palette[1], std::move(grids));
+    for (std::size_t id = 2; id < palette.size(); ++id)
+        volume.materialId(palette[id]);
+    for (std::size_t k = 0; k < layers.size(); ++k) {
+        const std::string name = fmt::format("interface_{:02d}_{}", k + 1, layers[k]);
+        auto interface = requiredGrid<openvdb::FloatGrid>(*read, name, file);
+        if (!interface->tree().hasSameTopology(raw->base->tree()))
+            throw RunError(file, fmt::format("grid '{}' has another topology than 'base'", name));
+        volume.pushLayer(layers[k]);
+        raw->interfaces.back() = interface;
+    }
+    if (!material->tree().hasSameTopology(raw->base->tree()))
+        throw RunError(file, "grid 'material' has another topology than 'base'");
+    raw->material = material;
+    for (auto& grid : *read) {
+        const std::string name = grid->getName();
+        auto field = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
+        if (field && grid->getGridClass() == openvdb::GRID_UNKNOWN)
+            raw->fields[name] = field;
+    }
+
+    LayerVolume::Provenance& from = volume.provenance;
+    from.script = optionalText(*meta, "patina_script");
+    from.scriptName = optionalText(*meta, "patina_script_name");
+    from.model = optionalText(*meta, "patina_model");
+    from.modelHash = optionalText(*meta, "patina_model_hash");
+    from.program = optionalText(*meta, "patina_version");
+    try {
+        from.seed = std::stoull(optionalText(*meta, "patina_seed"));
+    } catch (const std::exception&) {
+        throw RunError(file, "its metadata 'patina_seed' is not a number");
+    }
+    return volume;
+}
+
+std::vector<GridSummary> summarizeGrids(const LayerVolume& volume) {
+    const NestGrids& grids = volume.grids();
+    std::vector<GridSummary> summary;
+    const auto add = [&](const std::string& name, const openvdb::GridBase& grid, const char* gridClass) {
+        summary.push_back({name, grid.valueType(), gridClass, grid.activeVoxelCount(), grid.memUsage()});
+    };
+    add("base", *grids.base, "level set");
+    for (int k = 1; k <= volume.layerCount(); ++k)
+        add(volume.interfaceGridName(k), *grids.interfaces[k - 1], "level set");
+    add("material", *grids.material, "IDs");
+    for (const auto& [name, field] : grids.fields)
+        add(name, *field, "field");
+    return summary;
+}
+
+} // namespace patina

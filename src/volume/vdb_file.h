@@ -1,0 +1,31 @@
+#pragma once
+// Volumes in and out as .vdb: grids `base`, `surface`, `interface_01_…`, `material`, fields; metadata `patina_…`.
+
+#include "volume/layer_volume.h"
+
+#include <filesystem>
+
+namespace patina {
+
+/// Starts OpenVDB; to be called once before anything of volume/ is used. Safe to call again.
+void initializeVolumes();
+
+/// Writes a volume atomically. Level sets are single precision (half would destroy films of 0.001 voxel).
+/// \throws RunError when it cannot be written.
+void writeVolume(const LayerVolume& volume, const std::filesystem::path& path);
+
+/// Reads what writeVolume() wrote, bit for bit.
+/// \throws RunError naming the file, the grid and what was expected.
+LayerVolume readVolume(const std::filesystem::path& path);
+
+/// What stands in a .vdb: one line per grid for `info`.
+struct GridSummary {
+    std::string name;
+    std::string type; ///< "float", "int32"
+    std::string gridClass;
+    std::size_t activeVoxels = 0;
+    std::size_t bytes = 0;
+};
+std::vector<GridSummary> summarizeGrids(const LayerVolume& volume);
+
+} // namespace patina

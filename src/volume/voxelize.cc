@@ -1,0 +1,75 @@
+#include "volume/voxelize.h"
+
+#include "base/errors.h"
+#include "volume/material_ids.h"
+#include "volume/nest_grids.h"
+
+#include <fmt/format.h>
+#include <openvdb/tools/MeshToVolume.h>
+
+#include <atomic>
+
+namespace patina {
+
+namespace {
+
+// The triangles in the voxels' own coordinates, as OpenVDB's voxeliser reads them.
+class TriangleAdapter {
+  public:
+    TriangleAdapter(const ClosedSurface& surface, double voxelSize) : surface_(surface), scale_(1.0 / voxelSize) {}
+
+    std::size_t polygonCount() const { return surface_.triangles.size(); }
+    std::size_t pointCount() const { return surface_.positions.size(); }
+    std::size_t vertexCount(std::size_t) const { return 3; }
+    void getIndexSpacePoint(std::size_t polygon, std::size_t vertex, openvdb::Vec3d& position) const {
+        const Imath::V3f& p = surface_.positions[surface_.triangles[polygon][static_cast<int>(vertex)]];
+        position = openvdb::Vec3d(p.x, p.y, p.z) * scale_;
+    }
+
+  private:
+    const ClosedSurface& surface_;
+    double scale_;
+};
+
+// OpenVDB's idea of cancelling, in terms of ours.
+struct Interrupter {
+    Progress& progress;
+    void start(const char* = nullptr) {}
+    void end() {}
+    bool wasInterrupted(int = -1) { return progress.cancelled(); }
+};
+
+} // namespace
+
+LayerVolume voxelize(const ClosedSurface& surface, const VoxelizeOptions& options, Progress& progress) {
+    const double voxelSize = options.scale.voxelSize;
+    const TriangleAdapter adapter(surface, voxelSize);
+    const auto transform = openvdb::math::Transform::createLinearTransform(voxelSize);
+    Interrupter interrupter{progress};
+    auto grids = std::make_unique<NestGrids>();
+    grids->base = openvdb::tools::meshToVolume<openvdb::FloatGrid>(interrupter, adapter, *transform,
+                                                                   static_cast<float>(options.exteriorBand),
+                                                                   static_cast<float>(options.interiorBand));
+    progress.checkpoint();
+    grids->interiorBand = options.interiorBand;
+    grids->exteriorBand = options.exteriorBand;
+
+    std::atomic<bool> inside{false};
+    for (const FloatLeaf* leaf : leavesOf(std::as_const(grids->base->tree())))
+        for (auto voxel = leaf->cbeginValueOn(); voxel && !inside; ++voxel)
+            if (*voxel < 0.f)
+                inside = true;
+    if (!inside)
+        throw ModelError("model", fmt::format("nothing of it is inside at a voxel size of {:.4g} scene units", voxelSize),
+                         "use smaller voxels (--voxels or --voxel-size), or check the model's faces");
+
+    auto tree = std::make_shared<openvdb::Int32Tree>(grids->base->tree(), 0, openvdb::TopologyCopy());
+    grids->material = openvdb::Int32Grid::create(tree);
+    grids->material->setTransform(grids->base->transform().copy());
+
+    LayerVolume volume(options.scale, options.metal, std::move(grids));
+    updateMaterialIds(volume);
+    return volume;
+}
+
+} // namespace patina
