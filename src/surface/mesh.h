@@ -37,6 +37,7 @@ struct SurfaceMesh {
     std::vector<int> triangleFaces;      ///< the face of the control mesh each triangle came from
     std::map<std::string, std::vector<float>> vertexAttributes;
     bool closed = true; ///< every edge has two triangles
+    std::string note;   ///< what the user should know about how it was made (a scheme that could not be used), or empty
 
     bool hasUvs() const { return !triangleUvs.empty(); }
     Imath::Box3f bounds() const;

@@ -40,10 +40,8 @@ struct StackProbe::Nest {
             } else {
                 // Outward in steps of at most half a voxel, so that no crossing is stepped over.
                 next = std::min({next, s + 0.5, to});
-                if (next <= s)
-                    return to;
             }
-            if (std::abs(next - s) <= 1e-12 * std::max(1.0, std::abs(s)))
+            if (std::abs(next - s) <= 1e-12)
                 return next;
             s = next;
             f = along(k, origin, direction, s, slope);

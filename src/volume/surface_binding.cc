@@ -38,4 +38,8 @@ SurfacePoint SurfaceBinding::closest(const Imath::V3d& position) const {
     return found->point;
 }
 
+bool SurfaceBinding::occluded(const Imath::V3f& origin, const Imath::V3f& direction) const {
+    return scene_.occluded(origin, direction, 0.f, std::numeric_limits<float>::infinity());
+}
+
 } // namespace patina

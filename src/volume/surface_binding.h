@@ -27,6 +27,9 @@ class SurfaceBinding {
     /// The closest point to any position (scene units); triangle -1 on the back.
     SurfacePoint closest(const Imath::V3d& position) const;
 
+    /// Whether the model itself is in the way of a ray to infinity.
+    bool occluded(const Imath::V3f& origin, const Imath::V3f& direction) const;
+
   private:
     const SurfaceMesh* surface_;
     RayScene scene_;

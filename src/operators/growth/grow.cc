@@ -1,0 +1,130 @@
+#include "operators/growth/grow.h"
+
+#include "base/errors.h"
+#include "operators/growth/growth_run.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace patina {
+
+namespace {
+
+void check(bool holds, const char* what, const char* remedy) {
+    if (!holds)
+        throw RunError("growth", what, remedy);
+}
+
+void checkOptions(const GrowthLattice& lattice, const GrowthOptions& options) {
+    check(options.total > 0.0 && options.step >= 0.0, "step or total out of range", "use 0 <= step, total > 0");
+    check(options.age() < 1e6, "a pattern older than a million monolayers", "use a smaller total");
+    check(options.reach >= 1 && options.reach <= 64, "reach out of range", "use 1 to 64 cells");
+    check(options.patch >= 1 && options.patch <= 256, "patch out of range", "use 1 to 256 cells");
+    check(options.firstSeeds >= 0.0 && options.seeding >= 0.0, "negative density of seeds", "use 0 or more");
+    check(options.blockedFraction >= 0.0 && options.blockedFraction <= 1.0, "blocked fraction out of range",
+          "use 0 to 1");
+    check(options.spread >= 0.0 && options.blockedSpread >= 0.0, "negative rate of spread", "use 0 or more");
+    check(options.thickening >= 0.0 && options.thickening <= 1.0, "thickening out of range", "use 0 to 1");
+    check(options.pointSpacing >= 1.0, "sample points closer than cells", "use fewer points");
+    const auto fits = [&](const std::vector<float>& values) {
+        return values.empty() || values.size() == lattice.size();
+    };
+    check(fits(options.arrival) && fits(options.blocked), "a map that does not fit the lattice",
+          "give one value per cell");
+    for (const int cell : options.seedCells)
+        check(cell >= 0 && std::size_t(cell) < lattice.size(), "a seed cell outside the lattice", "");
+}
+
+GrownHeights growHeights(const GrowthRun& run) {
+    switch (run.options.model) {
+    case GrowthModel::steadyThickening:
+        return growSteadyThickening(run);
+    case GrowthModel::randomDeposition:
+        return growRandomDeposition(run);
+    case GrowthModel::relaxation:
+        return growRelaxation(run);
+    case GrowthModel::ballisticDeposition:
+        return growBallisticDeposition(run);
+    case GrowthModel::directedPercolation:
+        return growDirectedPercolation(run);
+    case GrowthModel::barabasiStanley:
+        return growBarabasiStanley(run);
+    }
+    return {};
+}
+
+} // namespace
+
+std::vector<std::array<int, 4>> closedNeighbours(const GrowthLattice& lattice) {
+    auto closed = lattice.neighbours;
+    for (std::size_t i = 0; i < closed.size(); ++i)
+        for (int& next : closed[i])
+            if (next == GrowthLattice::noCell)
+                next = static_cast<int>(i);
+    return closed;
+}
+
+GrowthScale expectedScale(const GrowthOptions& given) {
+    GrowthOptions options = given;
+    options.arrival.clear();
+    options.blocked.clear();
+    options.seedCells.clear();
+    if (options.ofFull)
+        options.step = options.total;
+    const double age = options.age();
+    if (options.model == GrowthModel::randomDeposition)
+        return {age, std::sqrt(age)}; // heights are Poisson numbers
+    // Large enough for a standard error of one or two per cent of sigma (DPD: of about 80 seeds at the start).
+    int side = 256;
+    if (options.model == GrowthModel::directedPercolation)
+        side = 512;
+    if (options.model == GrowthModel::steadyThickening)
+        options.pointSpacing = std::min(options.pointSpacing, 8.0); // the statistics do not depend on the spacing
+    const bool periodic = options.model != GrowthModel::steadyThickening;
+    const GrowthLattice plane = flatLattice(side, side, periodic);
+    const GrowthRun run{plane, options, age, 0x9e3779b97f4a7c15u, "reference plane", nullptr};
+    const GrowthStatistics statistics = measureHeights(plane, growHeights(run).height);
+    return {statistics.mean, statistics.interfaceWidth};
+}
+
+double growthMarginCells(const GrowthOptions& options) {
+    // News passes from cell to cell only by events in order of time: first-passage percolation, which travels at 2.4
+    // cells per monolayer along an axis. 4 per monolayer and 24 cells leave room for the luckiest chain in 1e9 cells.
+    const double travel = 4.0 * options.age() + 24.0;
+    switch (options.model) {
+    case GrowthModel::randomDeposition:
+        return 0.0;
+    case GrowthModel::steadyThickening:
+        return 16.0 * options.pointSpacing; // 6 rounds that look one spacing around twice, blocks, the kernel of two
+    case GrowthModel::relaxation:
+        return latticeMarginCells + 2.0 * options.reach * travel;
+    case GrowthModel::directedPercolation:
+        return latticeMarginCells + options.patch + std::max({1.0, options.spread, options.blockedSpread}) * travel;
+    default:
+        return latticeMarginCells + travel;
+    }
+}
+
+GrowthPattern grow(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
+                   std::string_view label, Progress* progress) {
+    checkOptions(lattice, options);
+    GrownHeights grown = growHeights({lattice, options, options.age(), seed, label, progress});
+    GrowthPattern pattern;
+    pattern.statistics = measureHeights(lattice, grown.height);
+    pattern.statistics.particles = grown.particles;
+    double area = 0.0;
+    for (const float a : lattice.areas)
+        area += a;
+    const double envelope = pattern.statistics.mean * area;
+    pattern.statistics.density = envelope > 0.0 ? (grown.solid < 0.0 ? 1.0 : grown.solid / envelope) : 0.0;
+
+    pattern.factor.resize(lattice.size(), 0.f);
+    const double top = expectedScale(options).top();
+    if (top > 0.0)
+        std::transform(grown.height.begin(), grown.height.end(), pattern.factor.begin(),
+                       [top](float h) { return static_cast<float>(std::clamp(h / top, 0.0, 1.0)); });
+    pattern.height = std::move(grown.height);
+    return pattern;
+}
+
+} // namespace patina

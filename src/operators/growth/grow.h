@@ -1,0 +1,49 @@
+#pragma once
+// Lets a layer grow on a lattice: one entry for all the models.
+
+#include "base/progress.h"
+#include "operators/growth/growth_lattice.h"
+#include "operators/growth/growth_options.h"
+#include "operators/growth/growth_statistics.h"
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace patina {
+
+/// One value per cell of the lattice.
+struct GrowthPattern {
+    std::vector<float> height; ///< of the interface, in layers of one cell's thickness
+    std::vector<float> factor; ///< 0…1: what a coat's thickness is multiplied by
+    GrowthStatistics statistics;
+};
+
+/// The model's own mean and deviation of the height, of an endless plane with full arrival.
+struct GrowthScale {
+    double mean = 0.0;
+    double sigma = 0.0;
+    /// The height that counts as factor 1.
+    double top() const { return mean + 3.0 * sigma; }
+};
+
+/// Grows the pattern of options.step. The same seed, label and model make one history: a larger age goes on where a
+/// smaller one stopped (heights never fall), a piece of a model grows as the whole does from growthMarginCells inward
+/// of the cut, and the bits do not depend on the number of threads.
+/// Particles: RD and RDR particles are of one volume and arrive per area, so a cell of area a collects a of them per
+/// monolayer, each 1/a layers thick. BD, DPD and DPD_BS speak of cells: one per cell and monolayer, each one layer thick.
+/// Factors are heights over GrowthScale::top(), clamped to 0…1.
+/// \throws RunError for options out of range or vectors that do not fit the lattice; Interrupted when cancelled.
+GrowthPattern grow(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
+                   std::string_view label, Progress* progress = nullptr);
+
+/// Mean and deviation by which factors are made, at the age of the step, or of the last step where options.ofFull.
+/// In closed form for RD, otherwise of the same model on a reference plane with a key of its own: never of the object.
+/// The vectors of the options are left out.
+GrowthScale expectedScale(const GrowthOptions& options);
+
+/// How far from a cut (in cells) a pattern may differ from that of the whole model: RD 0, ST by its point spacing, the
+/// others by how fast news travels along the surface.
+double growthMarginCells(const GrowthOptions& options);
+
+} // namespace patina

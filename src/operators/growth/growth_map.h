@@ -1,0 +1,33 @@
+#pragma once
+// A grown pattern as a factor over the surface.
+
+#include "operators/growth/growth_lattice.h"
+#include "operators/maps/thickness_map.h"
+
+#include <memory>
+#include <vector>
+
+namespace patina {
+
+/// Reads values of a lattice's cells at any point of the surface: each cell counts by its area times tents over the two
+/// tangential directions of its column, times tents over the angle and the distance between the point and its plane.
+/// Between columns of one direction that is bilinear interpolation. A point with no cell within reach takes the nearest
+/// cell's value, or 0 where there is none within four cells.
+class GrowthMap : public ThicknessMap {
+  public:
+    /// \param values one per cell, such as GrowthPattern::factor; copied, as is all that is needed of the lattice.
+    /// \param filterWidth half width of the tents, scene units, where that is more than a cell: a coarser reader (its
+    ///        voxel size, or the distance of its pixels) gets block means.
+    /// \throws RunError when the sizes differ.
+    GrowthMap(const GrowthLattice& lattice, const std::vector<float>& values, double filterWidth = 0.0);
+    ~GrowthMap() override;
+
+    /// Thread-safe; about 100–200 ns at a filter of one cell.
+    double value(const MapPoint& point) const override;
+
+  private:
+    struct Index;
+    std::unique_ptr<const Index> index_;
+};
+
+} // namespace patina

@@ -1,0 +1,25 @@
+#pragma once
+// What a grown layer looks like in numbers.
+
+#include "operators/growth/growth_lattice.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace patina {
+
+/// Heights in layers (of one cell's thickness), weighted by area.
+struct GrowthStatistics {
+    std::uint64_t particles = 0; ///< that stayed
+    double mean = 0.0;
+    double interfaceWidth = 0.0; ///< rms deviation of the height (Rq)
+    double skewness = 0.0;
+    double coverage = 0.0;  ///< fraction of the area that is covered at all
+    double density = 0.0;   ///< solid below the interface: 1 for compact layers, 0.3 for a ballistic one
+    std::size_t patches = 0; ///< connected covered pieces
+};
+
+/// Everything but `particles` and `density`.
+GrowthStatistics measureHeights(const GrowthLattice& lattice, const std::vector<float>& heights);
+
+} // namespace patina

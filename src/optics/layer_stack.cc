@@ -1,0 +1,301 @@
+#include "optics/layer_stack.h"
+
+#include "base/errors.h"
+#include "optics/colour.h"
+#include "optics/fresnel.h"
+#include "optics/kubelka_munk.h"
+#include "optics/stack_kernel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace patina {
+
+namespace {
+
+using Imath::V3f;
+
+/// Thicker than this is the same as opaque or, for what neither absorbs nor scatters, the same as nothing.
+constexpr float thickestUm = 1e6f;
+/// Dielectrics that reflect less than this at normal incidence are taken to reflect less than all at grazing too: an
+/// interface that fades out must fade at every angle.
+constexpr float fullEdgeReflectance = 0.02f;
+
+/// How much of its own interface a film of this thickness has, 0…1: x⁴ / (1 + x⁴).
+float interfaceWeight(float thicknessUm) {
+    const float x = thicknessUm / StackOptics::interfaceThicknessUm;
+    const float x2 = x * x;
+    const float x4 = x2 * x2;
+    return x < 100.f ? x4 / (1.f + x4) : 1.f;
+}
+
+float normalDielectric(float below, float above) {
+    const float ratio = (below - above) / (below + above);
+    return ratio * ratio;
+}
+
+/// Pointers to the layers that are there, from bottom to top.
+struct PresentLayers {
+    int count = 0;
+    int index[StackOptics::maxLayers];
+    float thicknessUm[StackOptics::maxLayers];
+    float weight[StackOptics::maxLayers];
+};
+
+V3f clippedToGamut(const float* rgb) {
+    return {std::max(rgb[0], 0.f), std::max(rgb[1], 0.f), std::max(rgb[2], 0.f)};
+}
+
+float luminance(const V3f& rgb) { return 0.2126f * rgb.x + 0.7152f * rgb.y + 0.0722f * rgb.z; }
+
+V3f clamped01(const V3f& rgb) {
+    return {std::clamp(rgb.x, 0.f, 1.f), std::clamp(rgb.y, 0.f, 1.f), std::clamp(rgb.z, 0.f, 1.f)};
+}
+
+} // namespace
+
+StackOptics::StackOptics(const std::vector<const Material*>& materials, Model model)
+    : rgbWeights_(rec709BandWeights()), model_(model) {
+    if (materials.empty()) {
+        throw RunError("optics", "a stack needs a base material");
+    }
+    if (materials.size() > static_cast<std::size_t>(maxLayers) + 1) {
+        throw RunError("optics", "a stack may have at most " + std::to_string(maxLayers) + " layers, this one has " +
+                                     std::to_string(materials.size() - 1));
+    }
+    for (const Material* material : materials) {
+        Layer layer;
+        for (int band = 0; band < bandCount; ++band) {
+            const double absorption = material->absorption[band];
+            const double scattering = material->scattering[band];
+            const double kappa = std::sqrt(absorption * (absorption + 2.0 * scattering));
+            layer.scattering[band] = static_cast<float>(scattering);
+            layer.extinction[band] = static_cast<float>(absorption + scattering);
+            layer.kappa[band] = static_cast<float>(kappa);
+            layer.halfOverKappa[band] = kappa > 0.0 ? static_cast<float>(0.5 / kappa) : 0.f;
+        }
+        layer.reflectance = material->reflectance;
+        layer.refractiveIndex = std::max(material->refractiveIndex, 1.f);
+        layer.alpha = ggxAlpha(material->roughness);
+        layer.roughness = material->roughness;
+        layer.isMetal = material->isMetal;
+        layer.specular = material->isMetal ? material->reflectance
+                                           : Spectrum::constant(normalDielectric(layer.refractiveIndex, 1.f));
+        if (material->isMetal && layers_.size() > 0) {
+            // A metal inside the stack hides what is below: a film that reflects as the metal does at any thickness a
+            // picture can show. R∞ of K, S is the metal's reflectance; 50 / µm is a skin of some ten nanometres.
+            for (int band = 0; band < bandCount; ++band) {
+                const float r = std::clamp(material->reflectance[band], 0.01f, 0.99f);
+                const float scattering = 50.f;
+                const float absorption = scattering * absorptionOverScattering(r);
+                const float kappa = std::sqrt(absorption * (absorption + 2.f * scattering));
+                layer.scattering[band] = scattering;
+                layer.extinction[band] = absorption + scattering;
+                layer.kappa[band] = kappa;
+                layer.halfOverKappa[band] = 0.5f / kappa;
+            }
+            layer.refractiveIndex = 1.f;
+        }
+        layers_.push_back(layer);
+    }
+    for (std::size_t i = 0; i < internalReflectance_.size(); ++i) {
+        internalReflectance_[i] =
+            static_cast<float>(diffuseInterface(1.0 + 2.0 * i / (internalReflectance_.size() - 1)).internal);
+    }
+}
+
+namespace {
+
+float lookUpInternal(const std::array<float, 65>& table, float index) {
+    const float position = std::clamp((index - 1.f) * 32.f, 0.f, 63.999f);
+    const int below = static_cast<int>(position);
+    return table[below] + (position - below) * (table[below + 1] - table[below]);
+}
+
+PresentLayers presentLayers(const float* thicknessUm, int layerCount) {
+    PresentLayers present;
+    for (int k = 0; k < layerCount; ++k) {
+        const float d = thicknessUm[k];
+        if (d > 0.f) { // false for NaN too
+            present.index[present.count] = k + 1;
+            present.thicknessUm[present.count] = std::min(d, thickestUm);
+            present.weight[present.count] = interfaceWeight(d);
+            ++present.count;
+        }
+    }
+    return present;
+}
+
+} // namespace
+
+void StackOptics::evaluate(const float* thicknessUm, Appearance& out) const {
+    out.model = model_;
+    out.lobes.resize(layers_.size());
+    if (model_ == Model::paper) {
+        evaluatePaper(thicknessUm, out);
+    } else {
+        evaluateConserving(thicknessUm, out);
+    }
+}
+
+Spectrum StackOptics::bodyReflectance(const float* thicknessUm) const {
+    const PresentLayers present = presentLayers(thicknessUm, layerCount());
+    KernelInput input;
+    input.count = present.count;
+    input.base = &layers_[0].reflectance;
+    for (int k = 0; k < present.count; ++k) {
+        const Layer& layer = layers_[present.index[k]];
+        input.layers[k] = {&layer.scattering,    &layer.extinction,      &layer.kappa,
+                           &layer.halfOverKappa, present.thicknessUm[k], 0.f};
+    }
+    Spectrum result;
+    foldBody(input, result);
+    return result;
+}
+
+void StackOptics::evaluateConserving(const float* thicknessUm, Appearance& out) const {
+    const PresentLayers present = presentLayers(thicknessUm, layerCount());
+    KernelInput input;
+    input.count = present.count;
+    input.base = &layers_[0].reflectance;
+    input.rgbWeights = rgbWeights_.data();
+    float surfaceIndex = 1.f; // bare metal meets the air by its own n and k
+    for (int k = 0; k < present.count; ++k) {
+        const Layer& layer = layers_[present.index[k]];
+        float interfaceAbove = 0.f;
+        if (k + 1 < present.count) {
+            const Layer& above = layers_[present.index[k + 1]];
+            interfaceAbove = present.weight[k] * present.weight[k + 1] *
+                             normalDielectric(layer.refractiveIndex, above.refractiveIndex);
+        }
+        surfaceIndex += present.weight[k] * (layer.refractiveIndex - surfaceIndex);
+        input.layers[k] = {&layer.scattering,    &layer.extinction,      &layer.kappa,
+                           &layer.halfOverKappa, present.thicknessUm[k], interfaceAbove};
+    }
+    const float airReflectance = normalDielectric(surfaceIndex, 1.f);
+    const float airEdge = std::min(1.f, airReflectance / fullEdgeReflectance);
+    input.k1 = airReflectance;
+    input.k2 = lookUpInternal(internalReflectance_, surfaceIndex);
+    input.wantEdge = airEdge < 1.f;
+
+    KernelOutput output;
+    foldConserving(input, output);
+
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+        Lobe& lobe = out.lobes[i];
+        lobe.colour = lobe.edgeColour = V3f(0.f);
+        lobe.air = lobe.airEdge = 0.f;
+        lobe.alpha = layers_[i].alpha;
+        lobe.roughness = layers_[i].roughness;
+    }
+    out.diffuse = clippedToGamut(output.diffuse);
+    V3f bodySum = out.diffuse;
+    out.lobes[0].colour = clippedToGamut(output.lobes[0]);
+    bodySum += out.lobes[0].colour;
+    for (int k = 0; k < present.count; ++k) {
+        Lobe& lobe = out.lobes[present.index[k]];
+        lobe.colour = clippedToGamut(output.lobes[k + 1]);
+        bodySum += lobe.colour;
+    }
+    // A spectrum below 1 may still leave the gamut (gold's red is 1.04): clip, so that the channels conserve too.
+    const float most = 1.f - airReflectance;
+    for (int channel = 0; channel < 3; ++channel) {
+        if (bodySum[channel] > most) {
+            const float scale = most / bodySum[channel];
+            out.diffuse[channel] *= scale;
+            for (Lobe& lobe : out.lobes) {
+                lobe.colour[channel] *= scale;
+            }
+            bodySum[channel] = most;
+        }
+    }
+    if (input.wantEdge) {
+        const V3f edge = clippedToGamut(output.edge);
+        Lobe& metal = out.lobes[0];
+        for (int channel = 0; channel < 3; ++channel) {
+            const float room = most - (bodySum[channel] - metal.colour[channel]);
+            const float rising = std::max(std::min(edge[channel], room), metal.colour[channel]);
+            metal.edgeColour[channel] = metal.colour[channel] + (1.f - airEdge) * (rising - metal.colour[channel]);
+        }
+    } else {
+        out.lobes[0].edgeColour = out.lobes[0].colour;
+    }
+    for (int k = 0; k < present.count; ++k) {
+        Lobe& lobe = out.lobes[present.index[k]];
+        lobe.edgeColour = lobe.colour;
+    }
+    // The air's reflection has the roughness of the topmost film; as that film fades out, of the one below it.
+    float left = 1.f;
+    for (int k = present.count - 1; k >= -1; --k) {
+        const float share = k >= 0 ? left * present.weight[k] : left;
+        left -= share;
+        Lobe& lobe = out.lobes[k >= 0 ? present.index[k] : 0];
+        lobe.air = share * airReflectance;
+        lobe.airEdge = share * airEdge;
+        lobe.colour += V3f(lobe.air);
+        lobe.edgeColour += V3f(lobe.airEdge);
+    }
+
+    flatten(airReflectance, out);
+}
+
+// What metals mirror against what is scattered gives `metallic`; the width is the mean of the lobes' alpha², each by its
+// brightness.
+void StackOptics::flatten(float airReflectance, Appearance& out) const {
+    V3f metal(0.f);
+    float brightness = 0.f;
+    float width = 0.f;
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+        const Lobe& lobe = out.lobes[i];
+        if (layers_[i].isMetal) {
+            metal += lobe.colour - V3f(lobe.air);
+        }
+        const float weight = luminance(lobe.colour);
+        brightness += weight;
+        width += weight * lobe.alpha * lobe.alpha;
+    }
+    const float mirrored = luminance(metal);
+    const float total = mirrored + luminance(out.diffuse);
+    out.metallic = total > 0.f ? mirrored / total : 0.f;
+    out.baseColour = clamped01(metal + out.diffuse);
+    out.flattenedRoughness = brightness > 1e-6f ? std::sqrt(std::sqrt(std::min(width / brightness, 1.f))) : 1.f;
+    out.specular = std::min(airReflectance / 0.08f, 1.f);
+}
+
+void StackOptics::evaluatePaper(const float* thicknessUm, Appearance& out) const {
+    const PresentLayers present = presentLayers(thicknessUm, layerCount());
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+        Lobe& lobe = out.lobes[i];
+        lobe = Lobe{};
+        lobe.alpha = layers_[i].alpha;
+        lobe.roughness = layers_[i].roughness;
+    }
+    Spectrum diffuse;
+    Spectrum lobes[maxLayers + 1]; // [0] the metal, [k] present layer k - 1
+    for (int band = 0; band < bandCount; ++band) {
+        // From the top down, so that the transmittance of all that lies above an interface is at hand.
+        StackLight<float> above;
+        for (int k = present.count - 1; k >= 0; --k) {
+            const Layer& layer = layers_[present.index[k]];
+            lobes[k + 1][band] = layer.specular[band] * above.transmittance * above.transmittance;
+            const float absorption = layer.extinction[band] - layer.scattering[band];
+            above = onTop(above, StackLight<float>(kubelkaMunkLayer(std::max(absorption, 0.f), layer.scattering[band],
+                                                                    present.thicknessUm[k])));
+        }
+        lobes[0][band] = layers_[0].specular[band] * above.transmittance * above.transmittance;
+        const float base = layers_[0].reflectance[band];
+        diffuse[band] = above.reflectanceAbove + above.transmittance * above.transmittance * base /
+                                                     (1.f - above.reflectanceBelow * base);
+    }
+    const auto rgbOf = [](const Spectrum& spectrum) { return clamped01(V3f(linearRec709(spectrum))); };
+    out.diffuse = rgbOf(diffuse);
+    out.lobes[0].colour = out.lobes[0].edgeColour = rgbOf(lobes[0]);
+    for (int k = 0; k < present.count; ++k) {
+        Lobe& lobe = out.lobes[present.index[k]];
+        lobe.colour = lobe.edgeColour = rgbOf(lobes[k + 1]);
+    }
+    const float top = present.count > 0 ? layers_[present.index[present.count - 1]].refractiveIndex : 1.f;
+    flatten(normalDielectric(top, 1.f), out);
+}
+
+} // namespace patina

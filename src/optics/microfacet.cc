@@ -1,0 +1,153 @@
+#include "optics/microfacet.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace patina {
+
+namespace {
+
+using Imath::V3f;
+
+constexpr float pi = 3.14159265358979f;
+constexpr int cosineCount = 32;
+constexpr int alphaCount = 32;
+
+struct AlbedoTable {
+    std::array<std::array<LobeAlbedo, cosineCount>, alphaCount> directional;
+    std::array<LobeAlbedo, alphaCount> mean;
+    std::array<float, alphaCount> least;
+};
+
+float lambda(const V3f& w, float alpha) {
+    const float cosine2 = w.z * w.z;
+    const float tangent2 = std::max(1.f - cosine2, 0.f) / std::max(cosine2, 1e-12f);
+    return 0.5f * (std::sqrt(1.f + alpha * alpha * tangent2) - 1.f);
+}
+
+// Visible normals on a 32 by 32 grid, the weight of each is G2 / G1. The long tail of GGX sits where u1 is near 1:
+// u1 = 1 - (1 - t)² puts points there. Both halves of the azimuth are mirror images: one of them is enough.
+LobeAlbedo integrateAlbedo(float cosine, float alpha) {
+    constexpr int grid = 32;
+    const V3f wo(std::sqrt(std::max(0.f, 1.f - cosine * cosine)), 0.f, cosine);
+    double flat = 0.0;
+    double rising = 0.0;
+    for (int i = 0; i < grid; ++i) {
+        const float rest = 1.f - (i + 0.5f) / grid;
+        for (int j = 0; j < grid; ++j) {
+            const V3f h = sampleVisibleNormal(wo, alpha, 1.f - rest * rest, 0.5f * (j + 0.5f) / grid - 0.25f);
+            const float c = wo.dot(h);
+            const V3f wi = 2.f * c * h - wo;
+            if (c > 0.f && wi.z > 0.f) {
+                const float weight =
+                    2.f * rest * (1.f + lambda(wo, alpha)) / (1.f + lambda(wo, alpha) + lambda(wi, alpha));
+                const float s = schlickWeight(c);
+                flat += weight * (1.f - s);
+                rising += weight * s;
+            }
+        }
+    }
+    return {static_cast<float>(flat / (grid * grid)), static_cast<float>(rising / (grid * grid))};
+}
+
+AlbedoTable computeTable() {
+    AlbedoTable table;
+    for (int a = 0; a < alphaCount; ++a) {
+        const float alpha = std::max(static_cast<float>(a) / (alphaCount - 1), 1e-3f);
+        double flat = 0.0;
+        double rising = 0.0;
+        double weights = 0.0;
+        float least = 1.f;
+        for (int c = 0; c < cosineCount; ++c) {
+            const float cosine = std::max(static_cast<float>(c) / (cosineCount - 1), 1e-3f);
+            const LobeAlbedo albedo = integrateAlbedo(cosine, alpha);
+            table.directional[a][c] = albedo;
+            const double weight = cosine * (c == cosineCount - 1 ? 0.5 : 1.0);
+            flat += weight * albedo.flat;
+            rising += weight * albedo.rising;
+            weights += weight;
+            least = std::min(least, albedo.flat + albedo.rising);
+        }
+        table.mean[a] = {static_cast<float>(flat / weights), static_cast<float>(rising / weights)};
+        table.least[a] = least;
+    }
+    return table;
+}
+
+const AlbedoTable& albedoTable() {
+    static const AlbedoTable table = computeTable();
+    return table;
+}
+
+struct Position {
+    int below;
+    float weight;
+};
+
+Position positionOf(float value, int count) {
+    const float scaled = std::clamp(value, 0.f, 1.f) * (count - 1);
+    const int below = std::min(static_cast<int>(scaled), count - 2);
+    return {below, scaled - below};
+}
+
+float mix(float a, float b, float weight) { return a + weight * (b - a); }
+
+LobeAlbedo mix(const LobeAlbedo& a, const LobeAlbedo& b, float weight) {
+    return {mix(a.flat, b.flat, weight), mix(a.rising, b.rising, weight)};
+}
+
+} // namespace
+
+float ggxDistribution(const V3f& half, float alpha) {
+    const float a2 = alpha * alpha;
+    // cos² (a² - 1) + 1 = cos² a² + sin²: without the cancellation where alpha is small.
+    const float sine2 = half.x * half.x + half.y * half.y;
+    const float t = half.z * half.z * a2 + sine2;
+    return a2 / (pi * t * t);
+}
+
+float smithMasking(const V3f& direction, float alpha) { return 1.f / (1.f + lambda(direction, alpha)); }
+
+float smithVisibility(const V3f& wo, const V3f& wi, float alpha) {
+    // cos (1 + 2 lambda) = sqrt(cos² + alpha² sin²), so 4 cos_o cos_i (1 + lambda_o + lambda_i) has no tangent in it.
+    const float a2 = alpha * alpha;
+    const float o = std::sqrt(wo.z * wo.z + a2 * std::max(1.f - wo.z * wo.z, 0.f));
+    const float i = std::sqrt(wi.z * wi.z + a2 * std::max(1.f - wi.z * wi.z, 0.f));
+    return 0.5f / std::max(wi.z * o + wo.z * i, 1e-9f);
+}
+
+V3f sampleVisibleNormal(const V3f& wo, float alpha, float u1, float u2) {
+    const V3f stretched = V3f(alpha * wo.x, alpha * wo.y, wo.z).normalized();
+    const float length2 = stretched.x * stretched.x + stretched.y * stretched.y;
+    const V3f t1 = length2 > 1e-14f ? V3f(-stretched.y, stretched.x, 0.f) / std::sqrt(length2) : V3f(1.f, 0.f, 0.f);
+    const V3f t2 = stretched.cross(t1);
+    const float radius = std::sqrt(u1);
+    const float phi = 2.f * pi * u2;
+    const float p1 = radius * std::cos(phi);
+    const float s = 0.5f * (1.f + stretched.z);
+    const float p2 = (1.f - s) * std::sqrt(std::max(0.f, 1.f - p1 * p1)) + s * radius * std::sin(phi);
+    const V3f n = p1 * t1 + p2 * t2 + std::sqrt(std::max(0.f, 1.f - p1 * p1 - p2 * p2)) * stretched;
+    return V3f(alpha * n.x, alpha * n.y, std::max(1e-6f, n.z)).normalized();
+}
+
+LobeAlbedo lobeAlbedo(float cosine, float alpha) {
+    const AlbedoTable& table = albedoTable();
+    const Position a = positionOf(alpha, alphaCount);
+    const Position c = positionOf(cosine, cosineCount);
+    const auto& low = table.directional[a.below];
+    const auto& high = table.directional[a.below + 1];
+    return mix(mix(low[c.below], low[c.below + 1], c.weight), mix(high[c.below], high[c.below + 1], c.weight), a.weight);
+}
+
+LobeAlbedo meanLobeAlbedo(float alpha) {
+    const Position a = positionOf(alpha, alphaCount);
+    return mix(albedoTable().mean[a.below], albedoTable().mean[a.below + 1], a.weight);
+}
+
+float leastLobeAlbedo(float alpha) {
+    const Position a = positionOf(alpha, alphaCount);
+    return mix(albedoTable().least[a.below], albedoTable().least[a.below + 1], a.weight);
+}
+
+} // namespace patina

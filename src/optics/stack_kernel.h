@@ -1,0 +1,42 @@
+#pragma once
+// The inner loop of StackOptics: one stack, all bands at once.
+
+#include "optics/layer_stack.h"
+
+namespace patina {
+
+/// What the kernel needs to know of one present layer.
+struct KernelLayer {
+    const Spectrum* scattering;
+    const Spectrum* extinction;
+    const Spectrum* kappa;
+    const Spectrum* halfOverKappa;
+    float thicknessUm;
+    float interfaceAbove; ///< reflectance of the interface with the layer above; 0 for the topmost
+};
+
+/// A stack whose absent layers are left out.
+struct KernelInput {
+    int count;
+    KernelLayer layers[StackOptics::maxLayers];
+    const Spectrum* base;
+    const Spectrum* rgbWeights; ///< three of them
+    float k1;                   ///< of the interface with the air, from outside
+    float k2;                   ///< from inside
+    bool wantEdge;
+};
+
+/// Linear Rec.709, not clipped.
+struct KernelOutput {
+    float diffuse[3];
+    float lobes[StackOptics::maxLayers + 1][3]; ///< below the air: [0] the metal, [k] above present layer k - 1
+    float edge[3];                              ///< what the metal would reflect were it perfect
+};
+
+/// Kubelka–Munk of the layers over the base; interfaces are left out.
+void foldBody(const KernelInput& input, Spectrum& result);
+
+/// The default model (docs/optics.md, "Glossy and diffuse").
+void foldConserving(const KernelInput& input, KernelOutput& output);
+
+} // namespace patina

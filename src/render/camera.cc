@@ -1,0 +1,127 @@
+#include "render/camera.h"
+
+#include "base/errors.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace patina {
+
+namespace {
+
+float radians(float degrees) { return degrees * float(M_PI) / 180.f; }
+
+std::vector<Imath::V3f> corners(const Imath::Box3f& box) {
+    std::vector<Imath::V3f> points;
+    for (int i = 0; i < 8; ++i)
+        points.emplace_back(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y,
+                            i & 4 ? box.max.z : box.min.z);
+    return points;
+}
+
+} // namespace
+
+CameraView automaticView(const SurfaceMesh& surface, UpAxis up) {
+    CameraView view;
+    view.up = up;
+    const Frame set = uprightFrame(up);
+    Imath::V3d area(0.0);
+    double total = 0.0;
+    Imath::Box3f box;
+    for (const Imath::V3i& t : surface.triangles) {
+        const Imath::V3f a = surface.positions[std::size_t(t.x)], b = surface.positions[std::size_t(t.y)],
+                         c = surface.positions[std::size_t(t.z)];
+        const Imath::V3d cross = Imath::V3d((b - a).cross(c - a));
+        area += cross;
+        total += cross.length();
+        for (const Imath::V3f& p : {a, b, c})
+            box.extendBy(set.toLocal(p));
+    }
+    // A sheet has a face: the area vectors of a closed surface add up to nothing, those of a flat one to its area.
+    if (total > 0.0 && area.length() > 0.6 * total) {
+        const Imath::V3f face = set.toLocal(Imath::V3f(area / area.length()));
+        const float elevation = std::asin(std::clamp(face.z, -1.f, 1.f)) * 180.f / float(M_PI);
+        // A little off the mirror direction, so that a flat sheet does not reflect the camera's own dark side.
+        view.elevationDegrees = std::clamp(elevation < 60.f ? elevation + 12.f : 62.f, -80.f, 80.f);
+        if (std::hypot(face.x, face.y) > 0.2f)
+            view.azimuthDegrees = std::atan2(face.x, -face.y) * 180.f / float(M_PI) + 10.f;
+        return view;
+    }
+    // From 12 degrees for what stands upright to 40 for what lies flat: a flat thing shows its face only from above.
+    const Imath::V3f size = box.size();
+    const float upright = std::clamp(2.f * size.z / std::max({size.x, size.y, 1e-20f}), 0.f, 1.f);
+    view.elevationDegrees = 40.f + (12.f - 40.f) * upright;
+    view.azimuthDegrees = 20.f;
+    return view;
+}
+
+Camera Camera::framed(const Imath::Box3f& bounds, const CameraView& view, float aspect) {
+    if (bounds.isEmpty())
+        throw RunError("camera", "there is nothing to look at");
+    return framed(corners(bounds), view, aspect);
+}
+
+Camera Camera::framed(const std::vector<Imath::V3f>& points, const CameraView& view, float aspect) {
+    if (points.empty())
+        throw RunError("camera", "there is nothing to look at");
+    if (!(aspect > 0.01f && aspect < 100.f))
+        throw RunError("camera", "the picture's sides must not differ by more than a factor of 100");
+    if (!(view.fieldOfViewDegrees >= 0.5f && view.fieldOfViewDegrees <= 150.f))
+        throw RunError("camera", "the field of view must be 0.5 to 150 degrees");
+    if (!(std::abs(view.elevationDegrees) <= 90.f) || !std::isfinite(view.azimuthDegrees))
+        throw RunError("camera", "the elevation must be -90 to 90 degrees, the azimuth a number");
+    if (!(view.fill > 0.01f && view.fill <= 1.f))
+        throw RunError("camera", "the filled part of the picture must be above 0.01 and at most 1");
+
+    Camera camera;
+    const Frame set = uprightFrame(view.up, view.azimuthDegrees);
+    const float elevation = radians(view.elevationDegrees);
+    const Imath::V3f toViewer = -set.bitangent;
+    camera.forward_ = -(toViewer * std::cos(elevation) + set.normal * std::sin(elevation)).normalized();
+    camera.right_ = set.tangent;
+    camera.upward_ = camera.right_.cross(camera.forward_).normalized();
+    const float half = std::tan(0.5f * radians(view.fieldOfViewDegrees));
+    camera.halfWidth_ = half * std::max(aspect, 1.f);
+    camera.halfHeight_ = half * std::max(1.f / aspect, 1.f);
+
+    // With the camera at (cx, cy, -d) in its own axes, a point (x, y, z) lies left of the right edge where
+    // x - cx <= t (d + z), and right of the left edge where cx - x <= t (d + z). So d t + cx >= A = max(x - t z) and
+    // d t - cx >= B = max(-x - t z): the smallest d is (A + B) / 2t and it centres the points at cx = (A - B) / 2.
+    constexpr float none = -std::numeric_limits<float>::infinity();
+    const float tx = camera.halfWidth_ * view.fill;
+    const float ty = camera.halfHeight_ * view.fill;
+    float right = none, left = none, top = none, bottom = none, nearest = none;
+    Imath::Box3f box;
+    for (const Imath::V3f& p : points)
+        box.extendBy(p);
+    const Imath::V3f centre = box.center();
+    for (const Imath::V3f& p : points) {
+        const Imath::V3f q = p - centre;
+        if (!std::isfinite(q.x) || !std::isfinite(q.y) || !std::isfinite(q.z))
+            throw RunError("camera", "a point to look at is not finite");
+        const float x = q ^ camera.right_, y = q ^ camera.upward_, z = q ^ camera.forward_;
+        right = std::max(right, x - tx * z), left = std::max(left, -x - tx * z);
+        top = std::max(top, y - ty * z), bottom = std::max(bottom, -y - ty * z);
+        nearest = std::max(nearest, -z);
+    }
+    const float extent = std::max(box.size().length(), 1e-20f);
+    const float distance =
+        std::max({(right + left) / (2.f * tx), (top + bottom) / (2.f * ty), nearest + 0.05f * extent});
+    camera.position_ = centre + camera.right_ * (0.5f * (right - left)) + camera.upward_ * (0.5f * (top - bottom)) -
+                       camera.forward_ * distance;
+    return camera;
+}
+
+CameraRay Camera::ray(float x, float y) const {
+    const Imath::V3f direction =
+        forward_ + right_ * ((2.f * x - 1.f) * halfWidth_) + upward_ * ((1.f - 2.f * y) * halfHeight_);
+    return {position_, direction.normalized()};
+}
+
+Imath::V2f Camera::project(const Imath::V3f& point) const {
+    const Imath::V3f q = point - position_;
+    const float z = q ^ forward_;
+    return {0.5f + 0.5f * (q ^ right_) / (z * halfWidth_), 0.5f - 0.5f * (q ^ upward_) / (z * halfHeight_)};
+}
+
+} // namespace patina

@@ -1,0 +1,54 @@
+#pragma once
+// A perspective camera that finds the object by itself.
+
+#include "render/frame.h"
+#include "surface/mesh.h"
+
+#include <Imath/ImathBox.h>
+
+#include <vector>
+
+namespace patina {
+
+struct CameraRay {
+    Imath::V3f origin;
+    Imath::V3f direction; ///< unit
+};
+
+/// Where the camera stands relative to the object it looks at.
+struct CameraView {
+    UpAxis up = UpAxis::z;
+    float azimuthDegrees = 0.f;     ///< 0: the model's front (frame.h); positive: walks to the right, around the model
+    float elevationDegrees = 15.f;  ///< above the horizon, -90…90
+    float fieldOfViewDegrees = 22.f; ///< over the shorter side of the picture; 22 is a 90 mm portrait lens, 50 a wide one
+    float fill = 0.86f;             ///< the part of the picture's tighter side that the object takes up, 0…1
+};
+
+/// The view a photographer would take: statues from a little above and aside, flat things from well above, open sheets
+/// from the side that their normals face.
+CameraView automaticView(const SurfaceMesh& surface, UpAxis up);
+
+class Camera {
+  public:
+    /// Looks along the view's direction, from the smallest distance at which every point lies in the filled part of the
+    /// picture, centred in it. `aspect` is width / height.
+    /// \throws RunError where there are no points, one is not finite, or an angle or the aspect is out of range.
+    static Camera framed(const std::vector<Imath::V3f>& points, const CameraView& view, float aspect);
+    /// The same for the corners of a box.
+    static Camera framed(const Imath::Box3f& bounds, const CameraView& view, float aspect);
+
+    /// The ray through a point of the picture: (0, 0) is its top left corner, (1, 1) its bottom right.
+    CameraRay ray(float x, float y) const;
+    /// Where a point appears in the picture, in the same coordinates. Only for points in front of the camera.
+    Imath::V2f project(const Imath::V3f& point) const;
+
+    const Imath::V3f& position() const { return position_; }
+    const Imath::V3f& forward() const { return forward_; }
+
+  private:
+    Imath::V3f position_, right_, upward_, forward_;
+    float halfWidth_ = 1.f;  ///< of the picture plane at distance 1
+    float halfHeight_ = 1.f;
+};
+
+} // namespace patina

@@ -1,0 +1,121 @@
+#include "render/contact_sheet.h"
+
+#include "base/errors.h"
+
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace patina {
+
+namespace {
+
+// OpenImageIO searches the folders of the system for a name; Debian's fonts-dejavu-core is what setup installs.
+const char* const fontNames[] = {"DejaVuSans", "LiberationSans-Regular", "FreeSans", "NotoSans-Regular"};
+const char* const fontFolders[] = {"/usr/share/fonts/truetype/dejavu", "/usr/share/fonts/truetype/liberation",
+                                   "/usr/share/fonts/truetype/liberation2", "/usr/share/fonts/truetype/freefont",
+                                   "/usr/share/fonts/truetype/noto", "/usr/share/fonts/TTF"};
+
+std::string findFont() {
+    std::error_code ignored;
+    for (const char* name : fontNames)
+        for (const char* folder : fontFolders) {
+            const auto path = std::filesystem::path(folder) / (std::string(name) + ".ttf");
+            if (std::filesystem::exists(path, ignored))
+                return path.string();
+        }
+    return {};
+}
+
+void paste(Image& sheet, const Image& picture, int left, int top) {
+    for (int y = 0; y < picture.height; ++y)
+        std::copy_n(picture.at(0, y), std::size_t(picture.width) * 3, sheet.at(left, top + y));
+}
+
+} // namespace
+
+bool drawText(Image& image, const std::string& text, float x, float y, int height, const Imath::V3f& ink,
+              TextAlign align, float maxWidth) {
+    if (text.empty())
+        return true;
+    const std::string font = findFont();
+    if (font.empty())
+        return false;
+    OIIO::ROI size = OIIO::ImageBufAlgo::text_size(text, height, font);
+    if (!size.defined())
+        return false;
+    if (maxWidth > 0.f && float(size.width()) > maxWidth) {
+        height = std::max(height / 2, int(float(height) * maxWidth / float(size.width())));
+        size = OIIO::ImageBufAlgo::text_size(text, height, font);
+    }
+    const float shift = align == TextAlign::left ? 0.f : align == TextAlign::centre ? 0.5f : 1.f;
+    OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeDesc::FLOAT);
+    OIIO::ImageBuf buffer(spec, image.pixels.data());
+    const std::vector<float> colour = {ink.x, ink.y, ink.z, 1.f};
+    return OIIO::ImageBufAlgo::render_text(buffer, int(std::lround(x - shift * float(size.width()))),
+                                           int(std::lround(y)), text, height, font,
+                                           OIIO::cspan<float>(colour.data(), image.channels));
+}
+
+ContactSheet makeContactSheet(const std::vector<LabelledImage>& images, const ContactSheetOptions& options) {
+    if (images.empty())
+        throw RunError("contact sheet", "there are no pictures to put on it");
+    int cellWidth = 0, cellHeight = 0;
+    bool labelled = false;
+    for (const LabelledImage& entry : images) {
+        if (entry.image.empty() || entry.image.channels != 3)
+            throw RunError("contact sheet", "the picture '" + entry.label + "' is empty or not RGB");
+        cellWidth = std::max(cellWidth, entry.image.width);
+        cellHeight = std::max(cellHeight, entry.image.height);
+        labelled = labelled || !entry.label.empty();
+    }
+    const int count = int(images.size());
+    int columns = options.columns;
+    if (columns <= 0) {
+        // columns · w : rows · h near 16 : 9, with rows = count / columns.
+        const double ideal = std::sqrt(count * (16.0 / 9.0) * cellHeight / cellWidth);
+        columns = std::clamp(int(std::lround(ideal)), 1, count);
+        // The last row should be full where a neighbour of that number makes it so.
+        for (int candidate : {columns, columns + 1, columns - 1})
+            if (candidate >= 1 && candidate <= count && count % candidate == 0) {
+                columns = candidate;
+                break;
+            }
+    }
+    columns = std::min(columns, count);
+    const int lines = (count + columns - 1) / columns;
+
+    const int letters = options.labelHeight > 0 ? options.labelHeight : std::clamp(cellHeight / 20, 12, 40);
+    const int gap = std::max(options.gap, 0);
+    const int labelBand = labelled ? 2 * letters : 0;
+    const int titleLetters = letters * 3 / 2;
+    const int titleBand = options.title.empty() ? 0 : 2 * titleLetters;
+
+    ContactSheet sheet;
+    sheet.image = Image(gap + columns * (cellWidth + gap), titleBand + gap + lines * (cellHeight + labelBand + gap));
+    for (int y = 0; y < sheet.image.height; ++y)
+        for (int x = 0; x < sheet.image.width; ++x)
+            sheet.image.setRgb(x, y, options.paper);
+
+    // Letters stand a third of their height above the bottom of their band.
+    sheet.hasText = drawText(sheet.image, options.title, 0.5f * float(sheet.image.width),
+                             float(gap) + 1.25f * float(titleLetters), titleLetters, options.ink, TextAlign::centre,
+                             float(sheet.image.width - 2 * gap));
+    for (int i = 0; i < count; ++i) {
+        const LabelledImage& entry = images[std::size_t(i)];
+        const int left = gap + (i % columns) * (cellWidth + gap);
+        const int top = titleBand + gap + (i / columns) * (cellHeight + labelBand + gap);
+        paste(sheet.image, entry.image, left + (cellWidth - entry.image.width) / 2,
+              top + (cellHeight - entry.image.height) / 2);
+        const bool drawn = drawText(sheet.image, entry.label, float(left) + 0.5f * float(cellWidth),
+                                    float(top + cellHeight) + 1.4f * float(letters), letters, options.ink,
+                                    TextAlign::centre, float(cellWidth));
+        sheet.hasText = sheet.hasText && drawn;
+    }
+    return sheet;
+}
+
+} // namespace patina

@@ -1,0 +1,65 @@
+#include "render/environment.h"
+
+#include <algorithm>
+
+namespace patina {
+
+namespace {
+
+float smoothStep(float from, float to, float x) {
+    const float t = std::clamp((x - from) / (to - from), 0.f, 1.f);
+    return t * t * (3.f - 2.f * t);
+}
+
+Imath::V3f mix(const Imath::V3f& a, const Imath::V3f& b, float t) { return a * (1.f - t) + b * t; }
+
+// The set, in units in which a white card on the floor is about 1: a broad main box to the left, a weaker one filling
+// from the right, a strip behind on each side for the outline, and a lid.
+const StudioEnvironment::SoftBox studioBoxes[] = {
+    {-58.f, 30.f, 20.f, 34.f, {3.3f, 3.25f, 3.15f}},
+    {62.f, 20.f, 10.f, 30.f, {1.5f, 1.53f, 1.58f}},
+    {-150.f, 26.f, 9.f, 34.f, {3.2f, 3.2f, 3.2f}},
+    {138.f, 28.f, 9.f, 34.f, {3.6f, 3.65f, 3.7f}},
+    {180.f, 76.f, 24.f, 16.f, {1.5f, 1.5f, 1.5f}},
+};
+
+} // namespace
+
+StudioEnvironment::StudioEnvironment(UpAxis up, float azimuthDegrees) : set_(uprightFrame(up, azimuthDegrees)) {
+    constexpr float radians = float(M_PI) / 180.f;
+    for (const SoftBox& box : studioBoxes) {
+        const float azimuth = box.azimuthDegrees * radians, elevation = box.elevationDegrees * radians;
+        const Imath::V3f aside = set_.tangent * std::sin(azimuth) - set_.bitangent * std::cos(azimuth);
+        const Imath::V3f centre = aside * std::cos(elevation) + set_.normal * std::sin(elevation);
+        const Imath::V3f across = set_.normal.cross(aside);
+        boxes_.push_back({{across, centre.cross(across), centre},
+                          std::tan(box.halfWidthDegrees * radians),
+                          std::tan(box.halfHeightDegrees * radians),
+                          box.radiance});
+    }
+}
+
+Imath::V3f StudioEnvironment::radiance(const Imath::V3f& direction) const {
+    static const Imath::V3f zenith(0.12f, 0.128f, 0.14f), horizon(0.30f, 0.30f, 0.30f);
+    static const Imath::V3f edge(0.18f, 0.177f, 0.174f), nadir(0.10f, 0.098f, 0.096f);
+    const float height = direction ^ set_.normal;
+    Imath::V3f light = height >= 0.f ? mix(horizon, zenith, std::sqrt(std::min(height, 1.f)))
+                                     : mix(edge, nadir, std::min(-height, 1.f));
+    light = mix(light, horizon, 1.f - smoothStep(0.f, 0.04f, std::abs(height)));
+    for (const Box& box : boxes_) {
+        const float facing = direction ^ box.frame.normal;
+        if (facing <= 0.05f)
+            continue;
+        const float u = std::abs((direction ^ box.frame.tangent) / (facing * box.halfWidth));
+        const float v = std::abs((direction ^ box.frame.bitangent) / (facing * box.halfHeight));
+        if (u >= 1.f || v >= 1.f)
+            continue;
+        // Brightest in the middle, as a lamp behind cloth is; the cloth's edge is a tenth of it wide.
+        const float edges = (1.f - smoothStep(0.85f, 1.f, u)) * (1.f - smoothStep(0.85f, 1.f, v));
+        const float lamp = 1.f - 0.35f * std::min(u * u + v * v, 1.f);
+        light = mix(light, box.radiance * lamp, edges);
+    }
+    return light;
+}
+
+} // namespace patina

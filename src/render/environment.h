@@ -1,0 +1,57 @@
+#pragma once
+// Light from far away, as radiance over directions: the base of every sky, set and map.
+
+#include "render/frame.h"
+
+#include <Imath/ImathVec.h>
+
+#include <vector>
+
+namespace patina {
+
+/// Radiance arriving from infinitely far, linear Rec.709. Immutable; safe from any thread.
+class Environment {
+  public:
+    virtual ~Environment() = default;
+    /// Radiance from a unit direction (pointing away from the scene), finite and not negative.
+    virtual Imath::V3f radiance(const Imath::V3f& direction) const = 0;
+};
+
+/// The same radiance from everywhere: an overcast furnace.
+class UniformEnvironment final : public Environment {
+  public:
+    explicit UniformEnvironment(const Imath::V3f& radiance) : radiance_(radiance) {}
+    Imath::V3f radiance(const Imath::V3f&) const override { return radiance_; }
+
+  private:
+    Imath::V3f radiance_;
+};
+
+/// A photographer's set around the object: a sky that brightens towards the horizon, darker ground, and soft boxes for
+/// metal to reflect. White balanced: no part is far from neutral, so that colours are the material's own.
+class StudioEnvironment final : public Environment {
+  public:
+    /// A luminous rectangle infinitely far away, with soft edges.
+    struct SoftBox {
+        float azimuthDegrees;   ///< from the viewer's side of the object; positive: to the viewer's right
+        float elevationDegrees; ///< of the centre
+        float halfWidthDegrees;
+        float halfHeightDegrees;
+        Imath::V3f radiance;
+    };
+
+    /// `azimuthDegrees` is the camera's: the set stands as seen by the viewer.
+    explicit StudioEnvironment(UpAxis up, float azimuthDegrees = 0.f);
+    Imath::V3f radiance(const Imath::V3f& direction) const override;
+
+  private:
+    struct Box {
+        Frame frame; ///< normal: to the box's centre
+        float halfWidth, halfHeight; ///< tangents of the angles
+        Imath::V3f radiance;
+    };
+    Frame set_;
+    std::vector<Box> boxes_;
+};
+
+} // namespace patina

@@ -1,0 +1,216 @@
+#include "render/lights.h"
+
+#include "base/errors.h"
+
+#include <algorithm>
+
+namespace patina {
+
+namespace {
+
+constexpr float pi = float(M_PI);
+
+float luminance(const Imath::V3f& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
+
+bool usable(const Imath::V3f& c) {
+    return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z) && c.x >= 0.f && c.y >= 0.f && c.z >= 0.f;
+}
+
+// Appends the running sums of `count` weights, over their total.
+void appendCumulative(std::vector<float>& table, std::vector<double>::const_iterator weights, int count) {
+    double total = 0.0;
+    for (int i = 0; i < count; ++i)
+        total += weights[i];
+    double running = 0.0;
+    for (int i = 0; i + 1 < count; ++i)
+        table.push_back(total > 0.0 ? float((running += weights[i]) / total) : 1.f);
+    table.push_back(1.f);
+}
+
+// The entry of a cumulative table that a number in [0, 1) falls into; the number becomes its place within the entry.
+int choose(const float* table, int count, float& u) {
+    const int entry = std::min(int(std::upper_bound(table, table + count, u) - table), count - 1);
+    const float below = entry > 0 ? table[entry - 1] : 0.f;
+    const float width = table[entry] - below;
+    u = width > 0.f ? std::clamp((u - below) / width, 0.f, 0.999999f) : 0.5f;
+    return entry;
+}
+
+} // namespace
+
+Imath::V3f KeyLight::radiance() const {
+    const float s = std::sin(angularRadiusDegrees * pi / 180.f);
+    return irradiance / (pi * s * s);
+}
+
+// A direction of the upright frame from its place in a cell, both places 0…1.
+Imath::V3f Lights::cellDirection(int row, int column, float down, float across) const {
+    const float z = 2.f * (float(row) + down) / rows - 1.f;
+    const float phi = 2.f * pi * (float(column) + across) / columns;
+    const float r = std::sqrt(std::max(0.f, 1.f - z * z));
+    return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
+Lights::Lights(std::shared_ptr<const Environment> environment, std::optional<KeyLight> key, UpAxis up, bool skyOnly)
+    : environment_(std::move(environment)), key_(key), frame_(uprightFrame(up)) {
+    double power = 0.0;
+    std::vector<float> luminances;
+    constexpr int looks = 3; // into each cell, each way
+    for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; ++column) {
+            float sum = 0.f;
+            for (int i = 0; i < looks * looks; ++i) {
+                const Imath::V3f light = environment_->radiance(frame_.toWorld(cellDirection(
+                    row, column, (float(i / looks) + 0.5f) / looks, (float(i % looks) + 0.5f) / looks)));
+                if (!usable(light))
+                    throw RunError("environment", "its radiance is negative or not finite in some direction");
+                sum += luminance(light);
+            }
+            luminances.push_back(sum / (looks * looks));
+            power += luminances.back();
+        }
+    const double cells = double(luminances.size());
+    // A cell seen dark keeps a hundredth of the mean, so that nothing bright between the looks is missed.
+    const float least = power > 0.0 ? float(0.01 * power / cells) : 1.f;
+    for (float& l : luminances)
+        l = std::max(l, least);
+    for (int i = 0; i < normalsDown * normalsAround; ++i) {
+        const float theta = pi * float(i / normalsAround) / (normalsDown - 1);
+        const float phi = 2.f * pi * float(i % normalsAround) / normalsAround;
+        tables_.push_back(makeTable(
+            luminances, {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)}, skyOnly));
+    }
+
+    if (key_) {
+        if (!(key_->angularRadiusDegrees >= 0.05f && key_->angularRadiusDegrees <= 60.f))
+            throw RunError("key light", "its angular radius must be 0.05 to 60 degrees");
+        if (!usable(key_->irradiance))
+            throw RunError("key light", "its irradiance is negative or not finite");
+        if (!(std::abs(key_->direction.length() - 1.f) < 1e-3f))
+            throw RunError("key light", "its direction must be a unit vector");
+        key_->direction.normalize();
+        keyFrame_ = frameAround(key_->direction);
+        keyRadiance_ = key_->radiance();
+        const double half = std::sin(0.5 * double(key_->angularRadiusDegrees) * M_PI / 180.0);
+        keyVersine_ = float(2.0 * half * half);
+        // A facing surface sees the key light's irradiance and, of the environment, at most about a quarter of its
+        // radiance summed over the sphere.
+        const double keyPower = luminance(key_->irradiance);
+        const double environmentPower = power / cells * M_PI;
+        if (keyPower > 0.0)
+            keyChance_ = float(std::clamp(keyPower / (keyPower + environmentPower), 0.1, 0.9));
+        if (power == 0.0)
+            keyChance_ = 1.f;
+    }
+}
+
+Lights::Table Lights::makeTable(const std::vector<float>& luminances, const Imath::V3f& normal, bool skyOnly) {
+    Table table;
+    std::vector<double> rowWeights;
+    std::vector<double> weights(columns);
+    double total = 0.0;
+    for (int row = 0; row < rows; ++row) {
+        const float z = 2.f * (float(row) + 0.5f) / rows - 1.f;
+        const float r = std::sqrt(1.f - z * z);
+        double sum = 0.0;
+        for (int column = 0; column < columns; ++column) {
+            const float phi = 2.f * pi * (float(column) + 0.5f) / columns;
+            const Imath::V3f direction(r * std::cos(phi), r * std::sin(phi), z);
+            // The true normal may be 20 degrees off the table's: what the table takes to be below it keeps a little.
+            const double cosine = std::max(direction ^ normal, 0.f) + 0.06f;
+            double& weight = weights[std::size_t(column)];
+            weight = skyOnly && z < 0.f ? 0.0 : luminances[std::size_t(row) * columns + std::size_t(column)] * cosine;
+            sum += weight;
+            table.density.push_back(float(weight));
+        }
+        appendCumulative(table.columnCumulative, weights.begin(), columns);
+        rowWeights.push_back(sum);
+        total += sum;
+    }
+    appendCumulative(table.rowCumulative, rowWeights.begin(), rows);
+    for (float& d : table.density)
+        d *= float(double(rows) * columns / (4.0 * M_PI * total));
+    return table;
+}
+
+const Lights::Table& Lights::tableFor(const Imath::V3f& normal) const {
+    const Imath::V3f n = frame_.toLocal(normal);
+    const int down = std::clamp(int(std::acos(std::clamp(n.z, -1.f, 1.f)) / pi * (normalsDown - 1) + 0.5f), 0,
+                                normalsDown - 1);
+    const int around = int((std::atan2(n.y, n.x) / (2.f * pi) + 1.f) * normalsAround + 0.5f) % normalsAround;
+    return tables_[std::size_t(down * normalsAround + around)];
+}
+
+Imath::V3f Lights::radiance(Source source, const Imath::V3f& direction) const {
+    if (source == environment)
+        return environment_->radiance(direction);
+    // |d - k|² = 2 (1 - cos): exact for small angles, where a cosine in single precision is not.
+    const bool inside = key_ && 0.5f * (direction - key_->direction).length2() <= keyVersine_;
+    return inside ? keyRadiance_ : Imath::V3f(0.f);
+}
+
+Imath::V3f Lights::radiance(const Imath::V3f& direction) const {
+    return radiance(environment, direction) + radiance(keyLight, direction);
+}
+
+float Lights::pdf(Source source, const Imath::V3f& normal, const Imath::V3f& direction) const {
+    if (source == keyLight) {
+        const bool inside = key_ && 0.5f * (direction - key_->direction).length2() <= keyVersine_;
+        return inside ? 1.f / (2.f * pi * keyVersine_) : 0.f;
+    }
+    const Imath::V3f d = frame_.toLocal(direction);
+    const int row = std::clamp(int(0.5f * (d.z + 1.f) * rows), 0, rows - 1);
+    float turn = std::atan2(d.y, d.x) / (2.f * pi);
+    turn = turn < 0.f ? turn + 1.f : turn;
+    const int column = std::clamp(int(turn * columns), 0, columns - 1);
+    return tableFor(normal).density[std::size_t(row) * columns + std::size_t(column)];
+}
+
+Lights::Sample Lights::sample(Source source, const Imath::V3f& normal, const Imath::V2f& position) const {
+    if (source == keyLight) {
+        if (!key_)
+            return {{0, 0, 1}, Imath::V3f(0.f), 0.f};
+        // Uniform in the cone: 1 - cos is uniform.
+        const float versine = keyVersine_ * position.x;
+        const float r = std::sqrt(std::max(0.f, versine * (2.f - versine)));
+        const float phi = 2.f * pi * position.y;
+        const Imath::V3f direction = keyFrame_.toWorld({r * std::cos(phi), r * std::sin(phi), 1.f - versine});
+        return {direction.normalized(), keyRadiance_, 1.f / (2.f * pi * keyVersine_)};
+    }
+    float u = position.x, v = position.y;
+    const Table& table = tableFor(normal);
+    const int row = choose(table.rowCumulative.data(), rows, v);
+    const int column = choose(table.columnCumulative.data() + row * columns, columns, u);
+    const Imath::V3f direction = frame_.toWorld(cellDirection(row, column, v, u)).normalized();
+    return {direction, environment_->radiance(direction),
+            table.density[std::size_t(row) * columns + std::size_t(column)]};
+}
+
+Imath::V3f Lights::irradiance(const Imath::V3f& normal) const {
+    Imath::V3d sum(0.0);
+    for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; ++column) {
+            const Imath::V3f direction = frame_.toWorld(cellDirection(row, column, 0.5f, 0.5f));
+            const float cosine = direction ^ normal;
+            if (cosine > 0.f)
+                sum += Imath::V3d(environment_->radiance(direction) * cosine);
+        }
+    sum *= 4.0 * M_PI / (double(rows) * columns);
+    if (key_)
+        sum += Imath::V3d(key_->irradiance * std::max(0.f, key_->direction ^ normal));
+    return Imath::V3f(sum);
+}
+
+Lights studioLights(UpAxis up, float azimuthDegrees) {
+    const Frame set = uprightFrame(up, azimuthDegrees);
+    constexpr float azimuth = -34.f * pi / 180.f, elevation = 42.f * pi / 180.f;
+    KeyLight key;
+    key.direction = ((set.tangent * std::sin(azimuth) - set.bitangent * std::cos(azimuth)) * std::cos(elevation) +
+                     set.normal * std::sin(elevation))
+                        .normalized();
+    key.angularRadiusDegrees = 5.f;
+    key.irradiance = Imath::V3f(1.75f, 1.7f, 1.62f);
+    return Lights(std::make_shared<StudioEnvironment>(up, azimuthDegrees), key, up, true);
+}
+
+} // namespace patina

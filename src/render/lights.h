@@ -1,0 +1,85 @@
+#pragma once
+// All the light of a picture: an environment and a key light, sampled by importance.
+
+#include "render/environment.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace patina {
+
+/// A sun-like disc infinitely far away. Its angular radius sets how soft the shadows are (the sun's is 0.27 degrees, a
+/// one-metre umbrella two metres away about 14).
+struct KeyLight {
+    Imath::V3f direction{0, 0, 1};  ///< unit, towards the light
+    float angularRadiusDegrees = 4.f; ///< 0.05…60
+    Imath::V3f irradiance{1, 1, 1}; ///< on a surface that faces it, linear Rec.709
+
+    /// The radiance of the disc: a disc of half-angle a irradiates a facing surface by pi sin² a times its radiance.
+    Imath::V3f radiance() const;
+};
+
+/// Every light here is infinitely far away: a light is a radiance over directions with a density to sample it by.
+/// Immutable after construction; safe from any thread.
+class Lights {
+  public:
+    enum Source { environment, keyLight, sourceCount };
+
+    /// Environment and, optionally, a key light. `up` is the axis along which the tables of the environment stand.
+    /// With `skyOnly` no shadow rays are sent below the horizon: right for a set with a floor, and for one without it the
+    /// light from below is still found by paths that go there.
+    /// \throws RunError for a key light out of range or a radiance that is negative or not finite.
+    explicit Lights(std::shared_ptr<const Environment> environment, std::optional<KeyLight> key = {},
+                    UpAxis up = UpAxis::z, bool skyOnly = false);
+
+    /// Of one source, or of all together, from a unit direction.
+    Imath::V3f radiance(Source source, const Imath::V3f& direction) const;
+    Imath::V3f radiance(const Imath::V3f& direction) const;
+
+    struct Sample {
+        Imath::V3f direction; ///< unit
+        Imath::V3f radiance;  ///< of this source alone
+        float pdf;            ///< per solid angle; 0: nothing to see
+    };
+    /// For a surface with this normal: the environment is sampled in proportion to its radiance times, roughly, the cosine.
+    Sample sample(Source source, const Imath::V3f& normal, const Imath::V2f& position) const;
+    /// Density with which sample() of this source draws a direction for this normal.
+    float pdf(Source source, const Imath::V3f& normal, const Imath::V3f& direction) const;
+    /// The part of the light that comes from this source, roughly: how often to choose it where only one is sampled.
+    float chance(Source source) const { return source == keyLight ? keyChance_ : 1.f - keyChance_; }
+
+    /// Irradiance on an unoccluded surface with this unit normal, by quadrature over the table (about 1 % for soft
+    /// environments), the key light in closed form where its whole disc is above the surface.
+    Imath::V3f irradiance(const Imath::V3f& normal) const;
+
+  private:
+    std::shared_ptr<const Environment> environment_;
+    std::optional<KeyLight> key_;
+    Frame frame_;    ///< of the table: normal is up
+    Frame keyFrame_; ///< around the key light's direction
+    Imath::V3f keyRadiance_{0.f};
+    float keyVersine_ = 0.f; ///< 1 - cos of the key light's angular radius
+    float keyChance_ = 0.f;
+
+    // The sphere in cells of equal solid angle: `columns` around, `rows` along the height above the horizon. One table
+    // for each of a few normals, 30 degrees apart.
+    static constexpr int columns = 128;
+    static constexpr int rows = 64;
+    static constexpr int normalsAround = 12;
+    static constexpr int normalsDown = 7;
+    struct Table {
+        std::vector<float> rowCumulative;    ///< ends at 1
+        std::vector<float> columnCumulative; ///< of each row, ends at 1
+        std::vector<float> density;          ///< per solid angle, of each cell
+    };
+    static Table makeTable(const std::vector<float>& luminances, const Imath::V3f& normal, bool skyOnly);
+    const Table& tableFor(const Imath::V3f& normal) const;
+    std::vector<Table> tables_;
+    Imath::V3f cellDirection(int row, int column, float down, float across) const;
+};
+
+/// Key light and set of the program's own pictures, as seen by a viewer at this azimuth.
+Lights studioLights(UpAxis up, float azimuthDegrees = 0.f);
+
+} // namespace patina

@@ -1,0 +1,243 @@
+#include "render/path_tracer.h"
+
+#include "base/errors.h"
+#include "render/pixel_sampler.h"
+#include "render/stage.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <thread>
+
+namespace patina {
+
+using Imath::V2f;
+using Imath::V3f;
+
+namespace {
+
+constexpr int tileSize = 16;
+constexpr int drawsPerVertex = 6;
+
+float largest(const V3f& c) { return std::max({c.x, c.y, c.z}); }
+
+bool isFinite(const V3f& c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); }
+
+float powerHeuristic(float mine, float other) {
+    // By the ratio, so that squares of large densities do not overflow.
+    const float ratio = other / mine;
+    return 1.f / (1.f + ratio * ratio);
+}
+
+// A tent over -1…1 by inverting its distribution.
+float tent(float u) { return u < 0.5f ? std::sqrt(2.f * u) - 1.f : 1.f - std::sqrt(2.f - 2.f * u); }
+
+// One path, from the camera to where its light came from.
+class PathWalk {
+  public:
+    PathWalk(const Stage& stage, const Lights& lights, const RenderOptions& options, PixelSampler& sampler)
+        : stage_(stage), lights_(lights), options_(options), sampler_(sampler) {}
+
+    V3f radiance(const CameraRay& camera);
+    std::uint64_t rays() const { return rays_; }
+
+  private:
+    /// Light sampled from here, then a direction to go on in. \returns false where the path ends.
+    template <typename Bsdf>
+    bool scatter(const Bsdf& bsdf, const StagePoint& point);
+    /// One shadow ray to one light, chosen with this chance.
+    template <typename Bsdf>
+    void sampleLight(const Bsdf& bsdf, const StagePoint& point, const V3f& wo, Lights::Source source, float chance);
+    /// The light of a path that leaves the scene.
+    void meetLights();
+    void add(V3f light, bool indirect);
+
+    const Stage& stage_;
+    const Lights& lights_;
+    const RenderOptions& options_;
+    PixelSampler& sampler_;
+    V3f origin_{0.f}, direction_{0.f};
+    V3f light_{0.f};
+    V3f throughput_{1.f};
+    V3f normal_{0.f};         ///< of the surface that the ray left
+    float directionPdf_ = 0.f; ///< of the ray, by its BSDF
+    int depth_ = 0;
+    std::uint64_t rays_ = 0;
+};
+
+void PathWalk::add(V3f light, bool indirect) {
+    const float most = largest(light);
+    if (indirect && most > options_.indirectClamp)
+        light *= options_.indirectClamp / most;
+    light_ += light;
+}
+
+template <typename Bsdf>
+void PathWalk::sampleLight(const Bsdf& bsdf, const StagePoint& point, const V3f& wo, Lights::Source source,
+                           float chance) {
+    const Lights::Sample towards = lights_.sample(source, point.shading.normal, sampler_.next2());
+    const V3f wi = point.shading.toLocal(towards.direction);
+    const float density = towards.pdf * chance;
+    if (!(density > 0.f) || wi.z <= 0.f)
+        return;
+    const V3f reflected = bsdf.evaluate(wo, wi) * (wi.z / density) * towards.radiance;
+    if (!(largest(reflected) > 0.f))
+        return;
+    if (stage_.facesFloor(point, towards.direction))
+        return;
+    ++rays_;
+    if (!stage_.blocked(point, towards.direction))
+        add(throughput_ * reflected * powerHeuristic(density, bsdf.pdf(wo, wi)), depth_ > 0);
+}
+
+template <typename Bsdf>
+bool PathWalk::scatter(const Bsdf& bsdf, const StagePoint& point) {
+    const V3f wo = point.shading.toLocal(-direction_);
+    sampler_.seek(1 + depth_ * drawsPerVertex);
+    // At what the camera sees every light is sampled, further on only one of them.
+    const float choice = sampler_.next1();
+    if (depth_ == 0) {
+        sampleLight(bsdf, point, wo, Lights::environment, 1.f);
+        sampleLight(bsdf, point, wo, Lights::keyLight, 1.f);
+    } else {
+        const auto source = choice < lights_.chance(Lights::keyLight) ? Lights::keyLight : Lights::environment;
+        sampleLight(bsdf, point, wo, source, lights_.chance(source));
+    }
+
+    const V2f u = sampler_.next2();
+    const BsdfSample next = bsdf.sample(wo, {u.x, u.y, sampler_.next1()});
+    if (!(next.pdf > 0.f) || !(next.wi.z > 0.f) || !(largest(next.weight) > 0.f))
+        return false;
+    throughput_ *= next.weight;
+    // Roulette from the third surface on: paths that carry little end, the others make up for them.
+    if (depth_ >= 2) {
+        const float survival = std::min(0.95f, largest(throughput_));
+        if (sampler_.next1() >= survival)
+            return false;
+        throughput_ /= survival;
+    }
+    directionPdf_ = next.pdf;
+    direction_ = point.shading.toWorld(next.wi).normalized();
+    origin_ = point.origin;
+    normal_ = point.shading.normal;
+    return true;
+}
+
+void PathWalk::meetLights() {
+    V3f light(0.f);
+    for (const auto source : {Lights::environment, Lights::keyLight}) {
+        // As likely as the shadow ray of the surface that the path comes from was to go this way.
+        const float density = lights_.pdf(source, normal_, direction_) * (depth_ == 1 ? 1.f : lights_.chance(source));
+        light += lights_.radiance(source, direction_) * powerHeuristic(directionPdf_, density);
+    }
+    add(throughput_ * light, depth_ > 1);
+}
+
+V3f PathWalk::radiance(const CameraRay& camera) {
+    origin_ = camera.origin;
+    direction_ = camera.direction;
+    for (;; ++depth_) {
+        ++rays_;
+        StagePoint point;
+        switch (stage_.intersect(origin_, direction_, depth_ > 0, point)) {
+        case StageHit::nothing: {
+            if (depth_ == 0)
+                return stage_.seenByCamera(lights_, direction_);
+            meetLights();
+            return light_;
+        }
+        case StageHit::inside:
+            return light_;
+        case StageHit::ground: {
+            const float far = stage_.backdropShare(point.position);
+            if (far > 0.f) {
+                add(throughput_ * stage_.backdrop() * far, depth_ > 1);
+                throughput_ *= 1.f - far;
+            }
+            if (far >= 1.f || depth_ >= options_.maxDepth || !scatter(stage_.groundBsdf(), point))
+                return light_;
+            break;
+        }
+        case StageHit::surface:
+            if (depth_ >= options_.maxDepth || !scatter(stage_.material(point), point))
+                return light_;
+            break;
+        }
+    }
+}
+
+void check(const RenderScene& scene, const RenderOptions& options) {
+    if (!scene.surface || scene.surface->triangles.empty())
+        throw RunError("picture", "there is no surface to render");
+    if (scene.surface->normals.size() != scene.surface->positions.size())
+        throw RunError("picture", "the surface has no normals");
+    if (!scene.material)
+        throw RunError("picture", "the surface has no material");
+    if (!(scene.groundAlbedo >= 0.f && scene.groundAlbedo <= 1.f))
+        throw RunError("picture", "the floor's albedo must be 0 to 1");
+    if (options.width < 1 || options.height < 1 || options.width > 32768 || options.height > 32768)
+        throw RunError("picture", "its sides must be 1 to 32768 pixels");
+    if (options.samples < 1 || options.samples > 1 << 20)
+        throw RunError("picture", "the samples per pixel must be 1 to 1048576");
+    if (options.maxDepth < 1 || options.maxDepth > 64)
+        throw RunError("picture", "the depth of paths must be 1 to 64");
+    if (!(options.indirectClamp > 0.f))
+        throw RunError("picture", "the bound of indirect light must be above 0");
+}
+
+} // namespace
+
+Rendering render(const RenderScene& scene, const Camera& camera, const Lights& lights, const RenderOptions& options,
+                 Progress& progress) {
+    check(scene, options);
+    const Stage stage(scene, lights);
+    const KeyedRandom random(options.seed, "picture", "paths");
+
+    Rendering result;
+    result.image = Image(options.width, options.height);
+    const int across = (options.width + tileSize - 1) / tileSize;
+    const int down = (options.height + tileSize - 1) / tileSize;
+    std::atomic<std::uint64_t> rays{0};
+    std::atomic<int> done{0};
+    const std::thread::id caller = std::this_thread::get_id();
+
+    const auto renderPixel = [&](int x, int y) {
+        PixelSampler sampler(random, x, y);
+        V3f sum(0.f);
+        std::uint64_t traced = 0;
+        for (int sample = 0; sample < options.samples; ++sample) {
+            sampler.startSample(std::uint32_t(sample));
+            const V2f offset = sampler.next2();
+            PathWalk walk(stage, lights, options, sampler);
+            const V3f light = walk.radiance(camera.ray((float(x) + 0.5f + tent(offset.x)) / float(options.width),
+                                                       (float(y) + 0.5f + tent(offset.y)) / float(options.height)));
+            if (isFinite(light))
+                sum += light;
+            traced += walk.rays();
+        }
+        result.image.setRgb(x, y, sum / float(options.samples));
+        return traced;
+    };
+    tbb::parallel_for(tbb::blocked_range<int>(0, across * down, 1), [&](const tbb::blocked_range<int>& range) {
+        for (int tile = range.begin(); tile != range.end(); ++tile) {
+            progress.checkpoint();
+            const int left = tile % across * tileSize, top = tile / across * tileSize;
+            std::uint64_t traced = 0;
+            for (int y = top; y < std::min(top + tileSize, options.height); ++y)
+                for (int x = left; x < std::min(left + tileSize, options.width); ++x)
+                    traced += renderPixel(x, y);
+            rays += traced;
+            const int finished = ++done;
+            // Progress listens to one thread only: the caller's, which works on tiles too.
+            if (std::this_thread::get_id() == caller)
+                progress.update(double(finished) / (across * down));
+        }
+    });
+    result.rays = rays;
+    return result;
+}
+
+} // namespace patina

@@ -1,0 +1,53 @@
+#include "render/pixel_sampler.h"
+
+#include <algorithm>
+
+namespace patina {
+
+namespace {
+
+std::uint32_t reverseBits(std::uint32_t v) {
+    v = ((v >> 1) & 0x55555555u) | ((v & 0x55555555u) << 1);
+    v = ((v >> 2) & 0x33333333u) | ((v & 0x33333333u) << 2);
+    v = ((v >> 4) & 0x0F0F0F0Fu) | ((v & 0x0F0F0F0Fu) << 4);
+    v = ((v >> 8) & 0x00FF00FFu) | ((v & 0x00FF00FFu) << 8);
+    return (v >> 16) | (v << 16);
+}
+
+// Multiplying by an even number lets each bit flip only bits above it. On reversed bits that is Owen's scrambling: a
+// digit is flipped depending on the more significant ones alone. The constants are those of Burley's paper.
+std::uint32_t scrambleReversed(std::uint32_t v, std::uint32_t seed) {
+    v += seed;
+    v ^= v * 0x6c50b47cu;
+    v ^= v * 0xb82f1e52u;
+    v ^= v * 0xc7afe638u;
+    v ^= v * 0x8d22f6e6u;
+    return v;
+}
+
+// Second dimension of the Sobol' sequence. Its matrix is Pascal's triangle modulo 2, whose columns follow from
+// c_{k+1} = c_k ^ (c_k >> 1).
+std::uint32_t sobolSecond(std::uint32_t index) {
+    std::uint32_t result = 0;
+    for (std::uint32_t column = 0x80000000u; index; index >>= 1, column ^= column >> 1)
+        if (index & 1u)
+            result ^= column;
+    return result;
+}
+
+float unit(std::uint32_t word) { return float(word >> 8) * (1.f / 16777216.f); }
+
+} // namespace
+
+Imath::V2f PixelSampler::next2() {
+    while (std::size_t(draw_) >= seeds_.size())
+        seeds_.push_back(random_->words(std::uint32_t(seeds_.size()), x_, y_, 0));
+    const auto& seed = seeds_[std::size_t(draw_++)];
+    const std::uint32_t index = reverseBits(scrambleReversed(reverseBits(sample_), seed[0]));
+    // The first dimension is the index with its bits reversed; scrambling wants it reversed once more.
+    const std::uint32_t first = reverseBits(scrambleReversed(index, seed[1]));
+    const std::uint32_t second = reverseBits(scrambleReversed(reverseBits(sobolSecond(index)), seed[2]));
+    return {unit(first), unit(second)};
+}
+
+} // namespace patina

@@ -1,0 +1,145 @@
+#include "render/stage.h"
+
+#include <algorithm>
+
+namespace patina {
+
+using Imath::V3f;
+using Imath::V3i;
+
+namespace {
+
+constexpr float pi = float(M_PI);
+// The floor fades into the backdrop between these distances from the object's middle, in radii.
+constexpr float fadeFrom = 1.6f;
+constexpr float fadeTo = 9.f;
+// The backdrop is darker than the lit floor: the object stands in a pool of light.
+constexpr float backdropShade = 0.42f;
+
+// Turns a shading normal just so far that a mirror ray along it does not go into the triangle (Keller et al. 2017, "The
+// Iray Light Transport Simulation and Rendering System", bends it likewise). Without it, silhouettes of coarse meshes go
+// black where the smooth normal looks away from the viewer.
+V3f bendTowards(const V3f& normal, const V3f& geometric, const V3f& wo) {
+    const V3f mirrored = 2.f * (wo ^ normal) * normal - wo;
+    const float least = std::min(0.9f * (wo ^ geometric), 0.02f);
+    const float below = least - (mirrored ^ geometric);
+    if (below <= 0.f && (wo ^ normal) > 0.f)
+        return normal;
+    const V3f lifted = (mirrored + std::max(below, 0.f) * geometric).normalized();
+    const V3f bent = wo + lifted;
+    return bent.length2() > 1e-8f ? bent.normalized() : geometric;
+}
+
+} // namespace
+
+V3f LambertBsdf::evaluate(const V3f&, const V3f& wi) const { return V3f(wi.z > 0.f ? albedo / pi : 0.f); }
+
+BsdfSample LambertBsdf::sample(const V3f&, const V3f& u) const {
+    // Uniform on the disc below, lifted to the hemisphere (Malley): density cos / pi, weight the albedo.
+    const float r = std::sqrt(u.x), phi = 2.f * pi * u.y;
+    const float z = std::sqrt(std::max(0.f, 1.f - u.x));
+    return {{r * std::cos(phi), r * std::sin(phi), z}, z / pi, V3f(albedo)};
+}
+
+float LambertBsdf::pdf(const V3f&, const V3f& wi) const { return std::max(0.f, wi.z) / pi; }
+
+Stage::Stage(const RenderScene& scene, const Lights& lights)
+    : scene_(scene), rays_(scene.surface->positions, scene.surface->triangles), upright_(uprightFrame(scene.up)) {
+    const Imath::Box3f box = scene.surface->bounds();
+    centre_ = box.center();
+    radius_ = std::max(0.5f * box.size().length(), 1e-20f);
+    float lowest = std::numeric_limits<float>::infinity();
+    float farthest = 0.f;
+    for (const V3f& p : scene.surface->positions) {
+        lowest = std::min(lowest, p ^ upright_.normal);
+        farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    }
+    // A hair below, so that a sheet that lies on the floor is seen and not the floor.
+    floorHeight_ = lowest - 1e-3f * radius_;
+    // A hit is placed by barycentric weights, to a few units in the last place of the coordinates.
+    clearance_ = 4e-6f * std::max(farthest, radius_);
+    backdrop_ = lights.irradiance(upright_.normal) * (scene.groundAlbedo / pi * backdropShade);
+}
+
+StageHit Stage::intersect(const V3f& origin, const V3f& direction, bool indirect, StagePoint& point) const {
+    float farthest = std::numeric_limits<float>::infinity();
+    bool meetsFloor = false;
+    if (scene_.ground) {
+        const float height = (origin ^ upright_.normal) - floorHeight_;
+        const float sinking = -(direction ^ upright_.normal);
+        if (height > 0.f && sinking > 1e-7f) {
+            farthest = height / sinking;
+            meetsFloor = true;
+        }
+    }
+    if (const auto hit = rays_.intersect(origin, direction, 0.f, farthest)) {
+        const bool back = (hit->geometricNormal ^ direction) > 0.f;
+        if (back && indirect && scene_.surface->closed)
+            return StageHit::inside;
+        shadeSurface(*hit, direction, back, point);
+        return StageHit::surface;
+    }
+    if (!meetsFloor)
+        return StageHit::nothing;
+    point.position = origin + direction * farthest;
+    point.position += upright_.normal * (floorHeight_ - (point.position ^ upright_.normal));
+    point.origin = point.position + upright_.normal * clearance_;
+    point.shading = upright_;
+    return StageHit::ground;
+}
+
+void Stage::shadeSurface(const RayScene::Hit& hit, const V3f& direction, bool back, StagePoint& point) const {
+    const SurfaceMesh& mesh = *scene_.surface;
+    const V3i& triangle = mesh.triangles[std::size_t(hit.point.triangle)];
+    const float weights[3] = {1.f - hit.point.u - hit.point.v, hit.point.u, hit.point.v};
+    const float side = back ? -1.f : 1.f;
+    V3f position(0.f), normal(0.f);
+    for (int i = 0; i < 3; ++i) {
+        position += mesh.positions[std::size_t(triangle[i])] * weights[i];
+        normal += mesh.normals[std::size_t(triangle[i])] * (weights[i] * side);
+    }
+    const V3f geometric = hit.geometricNormal.normalized() * side;
+    normal = normal.length2() > 1e-12f ? normal.normalized() : geometric;
+    if ((normal ^ geometric) <= 0.f)
+        normal = geometric;
+
+    // The triangle stands for a curved surface that bulges out over it. Starting shadow rays from the planes through the
+    // corners, weighted, instead of from the flat triangle takes the black facets off the terminator (Hanika 2021,
+    // "Hacking the Shadow Terminator", Ray Tracing Gems II, chapter 4).
+    V3f lift(0.f);
+    for (int i = 0; i < 3; ++i) {
+        const V3f cornerNormal = mesh.normals[std::size_t(triangle[i])] * side;
+        const float below = std::min(0.f, (position - mesh.positions[std::size_t(triangle[i])]) ^ cornerNormal);
+        lift -= cornerNormal * (below * weights[i]);
+    }
+    point.surface = hit.point;
+    point.position = position;
+    point.origin = position + lift + geometric * clearance_;
+    point.shading = frameAround(bendTowards(normal, geometric, -direction));
+}
+
+bool Stage::facesFloor(const StagePoint& from, const V3f& direction) const {
+    return scene_.ground && (direction ^ upright_.normal) < -1e-7f &&
+           (from.origin ^ upright_.normal) > floorHeight_;
+}
+
+bool Stage::blocked(const StagePoint& from, const V3f& direction) const {
+    return facesFloor(from, direction) ||
+           rays_.occluded(from.origin, direction, 0.f, std::numeric_limits<float>::infinity());
+}
+
+float Stage::backdropShare(const V3f& floorPoint) const {
+    V3f aside = floorPoint - centre_;
+    aside -= upright_.normal * (aside ^ upright_.normal);
+    const float t = std::clamp((aside.length() / radius_ - fadeFrom) / (fadeTo - fadeFrom), 0.f, 1.f);
+    // Quick at first and then ever slower: like light that spreads.
+    return 1.f - (1.f - t * t * (3.f - 2.f * t)) * (1.f - t);
+}
+
+V3f Stage::seenByCamera(const Lights& lights, const V3f& direction) const {
+    if (scene_.ground)
+        return backdrop_;
+    return scene_.background ? *scene_.background : lights.radiance(direction);
+}
+
+} // namespace patina

@@ -1,0 +1,23 @@
+#pragma once
+// What a run will take, before it starts.
+
+#include "script/program.h"
+#include "surface/mesh.h"
+#include "volume/layer_volume.h"
+
+namespace patina {
+
+struct Budget {
+    double activeVoxels = 0.0;
+    double allocatedVoxels = 0.0; ///< of all leaves, per grid
+    double volumeBytes = 0.0;     ///< of all grids when the script is done
+    double mapBytes = 0.0;        ///< of all maps while they are baked
+    double peakBytes = 0.0;       ///< of the process
+    double diskBytes = 0.0;       ///< about, uncompressed
+};
+
+/// From the surface's area: a band of w voxels around A voxels² of surface holds A w active voxels, in leaves that
+/// reach 8 · E(|n_x| + |n_y| + |n_z|) = 12 voxels further.
+Budget estimateBudget(const Program& program, const SurfaceMesh& surface, const VolumeScale& scale, int mapResolution);
+
+} // namespace patina

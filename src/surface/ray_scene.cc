@@ -1,0 +1,251 @@
+#include "surface/ray_scene.h"
+
+#include "base/errors.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace patina {
+
+using Imath::V3d;
+using Imath::V3f;
+using Imath::V3i;
+
+namespace {
+
+/// Embree's context with the best hit so far, for ties between triangles that share the edge a ray passes through.
+struct NearestContext {
+    RTCIntersectContext context;
+    float distance;
+    unsigned triangle;
+};
+
+/// Two triangles hit at exactly the same distance: the order of traversal depends on how the tree was built, so the
+/// smaller index wins.
+void keepSmallestIndex(const RTCFilterFunctionNArguments* arguments) {
+    if (arguments->valid[0] != -1 || arguments->context == nullptr)
+        return;
+    auto* nearest = reinterpret_cast<NearestContext*>(arguments->context);
+    const float distance = RTCRayN_tfar(arguments->ray, arguments->N, 0);
+    const unsigned triangle = RTCHitN_primID(arguments->hit, arguments->N, 0);
+    if (distance == nearest->distance && triangle > nearest->triangle) {
+        arguments->valid[0] = 0;
+        return;
+    }
+    nearest->distance = distance;
+    nearest->triangle = triangle;
+}
+
+struct TrianglePoint {
+    double u, v;
+    double squaredDistance;
+};
+
+/// The closest point of the segment p + s d, s in 0…1, as s.
+double closestOnSegment(const V3d& fromStart, const V3d& direction) {
+    const double squaredLength = direction.dot(direction);
+    if (squaredLength <= 0.0)
+        return 0.0;
+    return std::min(1.0, std::max(0.0, fromStart.dot(direction) / squaredLength));
+}
+
+/// Closest point of a triangle, degenerate ones included: inside if the foot of the perpendicular is inside, else on
+/// the nearest of the three edges.
+TrianglePoint closestOnTriangle(const V3d& p, const V3d& a, const V3d& b, const V3d& c) {
+    const V3d ab = b - a, ac = c - a, ap = p - a;
+    const double d00 = ab.dot(ab), d01 = ab.dot(ac), d11 = ac.dot(ac);
+    const double determinant = d00 * d11 - d01 * d01;
+    if (determinant > 1e-14 * d00 * d11) {
+        const double d20 = ap.dot(ab), d21 = ap.dot(ac);
+        const double u = (d11 * d20 - d01 * d21) / determinant;
+        const double v = (d00 * d21 - d01 * d20) / determinant;
+        if (u >= 0.0 && v >= 0.0 && u + v <= 1.0) {
+            const V3d offset = ap - u * ab - v * ac;
+            return {u, v, offset.dot(offset)};
+        }
+    }
+    const double s = closestOnSegment(ap, ab), t = closestOnSegment(ap, ac), r = closestOnSegment(p - b, c - b);
+    const V3d onAb = ap - s * ab, onAc = ap - t * ac, onBc = p - b - r * (c - b);
+    TrianglePoint best{s, 0.0, onAb.dot(onAb)};
+    if (onAc.dot(onAc) < best.squaredDistance)
+        best = {0.0, t, onAc.dot(onAc)};
+    if (onBc.dot(onBc) < best.squaredDistance)
+        best = {1.0 - r, r, onBc.dot(onBc)};
+    return best;
+}
+
+/// A triangle's corners side by side: a query touches hundreds of scattered triangles, and memory is what it waits for.
+struct Corners {
+    V3f a, b, c;
+};
+
+struct ClosestSearch {
+    const Corners* corners;
+    V3d position;
+    float radius;
+    int triangle = -1;
+    float distance = 0.f;
+    TrianglePoint point{};
+};
+
+bool visitTriangle(RTCPointQueryFunctionArguments* arguments) {
+    auto& search = *static_cast<ClosestSearch*>(arguments->userPtr);
+    const int index = static_cast<int>(arguments->primID);
+    const Corners& corners = search.corners[index];
+    const TrianglePoint point =
+        closestOnTriangle(search.position, V3d(corners.a), V3d(corners.b), V3d(corners.c));
+    // Distances are compared as floats, so that neighbours which share the closest corner or edge tie exactly.
+    const auto distance = static_cast<float>(std::sqrt(point.squaredDistance));
+    if (!(distance <= search.radius))
+        return false;
+    if (search.triangle >= 0 &&
+        !(distance < search.distance || (distance == search.distance && index < search.triangle)))
+        return false;
+    search.triangle = index;
+    search.distance = distance;
+    search.point = point;
+    // A little wider than the best, or nodes that hold a tie would be skipped. Embree measures in single precision, so
+    // the slack also covers the size of the coordinates.
+    const float scale = static_cast<float>(std::abs(search.position.x) + std::abs(search.position.y) +
+                                           std::abs(search.position.z));
+    const float radius = distance * (1.f + 1e-5f) + 1e-6f * scale;
+    if (radius < arguments->query->radius) {
+        arguments->query->radius = radius;
+        return true;
+    }
+    return false;
+}
+
+} // namespace
+
+struct RayScene::Scene {
+    std::vector<Corners> corners;
+    RTCDevice device = nullptr;
+    RTCScene scene = nullptr;
+
+    ~Scene() {
+        if (scene)
+            rtcReleaseScene(scene);
+        if (device)
+            rtcReleaseDevice(device);
+    }
+};
+
+RayScene::RayScene(const std::vector<V3f>& positions, const std::vector<V3i>& triangles)
+    : scene_(std::make_unique<Scene>()) {
+    scene_->corners.reserve(triangles.size());
+    for (const V3i& triangle : triangles)
+        scene_->corners.push_back({positions[triangle.x], positions[triangle.y], positions[triangle.z]});
+    const auto check = [this](const void* made) {
+        if (made)
+            return;
+        throw RunError("ray scene", rtcGetDeviceError(scene_->device) == RTC_ERROR_OUT_OF_MEMORY
+                                        ? "not enough memory for the rays' search tree"
+                                        : "Embree refused the model",
+                       "a coarser model or fewer subdivisions need less memory");
+    };
+    scene_->device = rtcNewDevice(nullptr);
+    check(scene_->device);
+    scene_->scene = rtcNewScene(scene_->device);
+    check(scene_->scene);
+    rtcSetSceneFlags(scene_->scene, RTC_SCENE_FLAG_ROBUST);
+
+    if (!triangles.empty()) {
+        RTCGeometry geometry = rtcNewGeometry(scene_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        check(geometry);
+        void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(V3f),
+                                                 positions.size());
+        void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(V3i),
+                                                triangles.size());
+        if (vertices)
+            std::memcpy(vertices, positions.data(), positions.size() * sizeof(V3f));
+        if (indices)
+            std::memcpy(indices, triangles.data(), triangles.size() * sizeof(V3i));
+        rtcSetGeometryIntersectFilterFunction(geometry, keepSmallestIndex);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(scene_->scene, geometry);
+        rtcReleaseGeometry(geometry);
+        check(vertices);
+        check(indices);
+    }
+    rtcCommitScene(scene_->scene);
+    if (const RTCError error = rtcGetDeviceError(scene_->device); error != RTC_ERROR_NONE)
+        throw RunError("ray scene", error == RTC_ERROR_OUT_OF_MEMORY ? "not enough memory for the rays' search tree"
+                                                                     : "Embree refused the model");
+}
+
+RayScene::~RayScene() = default;
+RayScene::RayScene(RayScene&&) noexcept = default;
+RayScene& RayScene::operator=(RayScene&&) noexcept = default;
+
+std::optional<RayScene::Hit> RayScene::intersect(const V3f& origin, const V3f& direction, float nearest,
+                                                 float farthest) const {
+    NearestContext context{};
+    rtcInitIntersectContext(&context.context);
+    context.distance = -1.f;
+    RTCRayHit query{};
+    query.ray.org_x = origin.x;
+    query.ray.org_y = origin.y;
+    query.ray.org_z = origin.z;
+    query.ray.dir_x = direction.x;
+    query.ray.dir_y = direction.y;
+    query.ray.dir_z = direction.z;
+    query.ray.tnear = nearest;
+    query.ray.tfar = farthest;
+    query.ray.mask = 0xffffffffu;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene_->scene, &context.context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+        return std::nullopt;
+    Hit hit;
+    hit.point = {static_cast<int>(query.hit.primID), query.hit.u, query.hit.v};
+    hit.distance = query.ray.tfar;
+    const Corners& corners = scene_->corners[hit.point.triangle];
+    hit.geometricNormal = (corners.b - corners.a).cross(corners.c - corners.a);
+    return hit;
+}
+
+bool RayScene::occluded(const V3f& origin, const V3f& direction, float nearest, float farthest) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRay ray{};
+    ray.org_x = origin.x;
+    ray.org_y = origin.y;
+    ray.org_z = origin.z;
+    ray.dir_x = direction.x;
+    ray.dir_y = direction.y;
+    ray.dir_z = direction.z;
+    ray.tnear = nearest;
+    ray.tfar = farthest;
+    ray.mask = 0xffffffffu;
+    rtcOccluded1(scene_->scene, &context, &ray);
+    return ray.tfar < 0.f;
+}
+
+std::optional<RayScene::Closest> RayScene::closest(const V3f& position, float radius) const {
+    if (scene_->corners.empty())
+        return std::nullopt;
+    ClosestSearch search;
+    search.corners = scene_->corners.data();
+    search.position = V3d(position);
+    search.radius = radius;
+    RTCPointQuery query;
+    query.x = position.x;
+    query.y = position.y;
+    query.z = position.z;
+    query.time = 0.f;
+    query.radius = radius;
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(scene_->scene, &query, &context, visitTriangle, &search);
+    if (search.triangle < 0)
+        return std::nullopt;
+    return Closest{{search.triangle, static_cast<float>(search.point.u), static_cast<float>(search.point.v)},
+                   search.distance};
+}
+
+} // namespace patina

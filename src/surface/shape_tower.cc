@@ -1,0 +1,3 @@
+#include "surface/shape_builder.h"
+#include "surface/shape_makers.h"
+namespace patina { Mesh makeTower() { return makeSphere(); } }

@@ -1,0 +1,200 @@
+#include "optics/layer_stack.h"
+#include "base/errors.h"
+#include "optics/fresnel.h"
+#include "optics_test_support.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace patina {
+namespace {
+
+using Imath::V3d;
+using Imath::V3f;
+using test::shippedMaterials;
+using test::Uniforms;
+
+Appearance look(const std::vector<std::string>& names, const std::vector<float>& thicknessUm,
+                OpticsModel model = OpticsModel::energyConserving) {
+    std::vector<const Material*> materials;
+    for (const std::string& name : names) {
+        materials.push_back(&shippedMaterials().at(name));
+    }
+    Appearance appearance;
+    StackOptics(materials, model).evaluate(thicknessUm.data(), appearance);
+    return appearance;
+}
+
+void expectNear(const V3f& a, const V3f& b, float tolerance) {
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(a[c], b[c], tolerance);
+    }
+}
+
+TEST(LayerStack, bareMetalIsAPureMirror) {
+    const Appearance bare = look({"copper"}, {});
+    expectNear(bare.diffuse, V3f(0.f), 0.f);
+    ASSERT_EQ(bare.lobes.size(), 1u);
+    expectNear(bare.lobes[0].colour, shippedMaterials().at("copper").specularColour, 2e-3f);
+    expectNear(bare.lobes[0].edgeColour, V3f(1.f), 1e-6f);
+    EXPECT_EQ(bare.metallic, 1.f);
+}
+
+TEST(LayerStack, thinTarnishDimsTheMirrorAndThickPatinaIsMatte) {
+    const float bare = look({"copper"}, {}).lobes[0].colour.x;
+    const float thin = look({"copper", "tarnish_1"}, {0.05f}).lobes[0].colour.x;
+    EXPECT_LT(thin, 0.8f * bare);
+    EXPECT_GT(thin, 0.4f * bare);
+    const Appearance thick = look({"copper", "tarnish_1", "cuprite_2", "marine_patina_4"}, {0.35f, 1.2f, 5.f});
+    EXPECT_LT(thick.lobes[0].colour.x, 1e-4f);
+    EXPECT_GT(thick.diffuse.y, 0.2f);
+    EXPECT_LT(thick.metallic, 0.01f);
+    float glossy = 0.f;
+    for (const Lobe& lobe : thick.lobes) {
+        glossy += lobe.colour.y;
+    }
+    EXPECT_LT(glossy, 0.04f);
+}
+
+TEST(LayerStack, aLayerOfNoThicknessIsNotThere) {
+    const Appearance with = look({"copper", "cuprite_2", "dirt", "marine_patina_4"}, {0.7f, 0.f, 2.f});
+    const Appearance without = look({"copper", "cuprite_2", "marine_patina_4"}, {0.7f, 2.f});
+    EXPECT_EQ(with.diffuse, without.diffuse);
+    EXPECT_EQ(with.lobes[0].colour, without.lobes[0].colour);
+    EXPECT_EQ(with.lobes[1].colour, without.lobes[1].colour);
+    EXPECT_EQ(with.lobes[2].colour, V3f(0.f));
+    EXPECT_EQ(with.lobes[3].colour, without.lobes[2].colour);
+}
+
+TEST(LayerStack, colourIsContinuousWhereALayerEnds) {
+    for (const char* top : {"cuprite", "antlerite", "lacquer", "soot"}) {
+        V3f last = test::total(look({"copper", "cuprite_2", top}, {0.3f, 0.f}));
+        const Appearance before = look({"copper", "cuprite_2", top}, {0.3f, 0.f});
+        const Appearance after = look({"copper", "cuprite_2", top}, {0.3f, 1e-4f});
+        expectNear(before.diffuse, after.diffuse, 3e-3f);
+        for (std::size_t i = 0; i < before.lobes.size(); ++i) {
+            expectNear(before.lobes[i].colour, after.lobes[i].colour, 3e-3f);
+            expectNear(before.lobes[i].edgeColour, after.lobes[i].edgeColour, 3e-3f);
+        }
+        for (int step = 0; step <= 400; ++step) {
+            const V3f now = test::total(look({"copper", "cuprite_2", top}, {0.3f, 0.001f * step}));
+            expectNear(now, last, 0.02f);
+            last = now;
+        }
+    }
+}
+
+TEST(LayerStack, bandKernelIsKubelkaMunk) {
+    Uniforms uniforms("kernel");
+    for (int i = 0; i < 2000; ++i) {
+        const test::RandomStack stack = test::randomStack(uniforms);
+        const Spectrum body = StackOptics(stack.materials).bodyReflectance(stack.thicknessUm.data());
+        for (int band = 0; band < bandCount; ++band) {
+            double expected = stack.materials[0]->reflectance[band];
+            for (std::size_t k = 1; k < stack.materials.size(); ++k) {
+                const Material& m = *stack.materials[k];
+                expected = overBackground(
+                    kubelkaMunkLayer<double>(m.absorption[band], m.scattering[band], stack.thicknessUm[k - 1]), expected);
+            }
+            ASSERT_NEAR(body[band], expected, 2e-5);
+        }
+    }
+}
+
+TEST(LayerStack, splittingALayerInTwoKeepsTheBody) {
+    const auto& library = shippedMaterials();
+    const Material* copper = &library.at("copper");
+    const Material* patina = &library.at("rural_patina_4");
+    const float whole[] = {2.5f};
+    const float halves[] = {0.9f, 1.6f};
+    const Spectrum a = StackOptics({copper, patina}).bodyReflectance(whole);
+    const Spectrum b = StackOptics({copper, patina, patina}).bodyReflectance(halves);
+    for (int band = 0; band < bandCount; ++band) {
+        EXPECT_NEAR(a[band], b[band], 2e-6);
+    }
+}
+
+TEST(LayerStack, neverReflectsMoreThanItReceives) {
+    Uniforms uniforms("energy");
+    Appearance out;
+    for (int i = 0; i < 20000; ++i) {
+        const test::RandomStack stack = test::randomStack(uniforms);
+        StackOptics(stack.materials).evaluate(stack.thicknessUm.data(), out);
+        const V3f sum = test::total(out);
+        for (int c = 0; c < 3; ++c) {
+            ASSERT_LE(sum[c], 1.f + 2e-6f);
+            ASSERT_GE(out.diffuse[c], 0.f);
+            for (const Lobe& lobe : out.lobes) {
+                ASSERT_GE(lobe.colour[c], 0.f);
+                ASSERT_LE(lobe.edgeColour[c] - lobe.airEdge, 1.f + 1e-6f);
+                ASSERT_LE(lobe.airEdge, 1.f);
+            }
+            ASSERT_LE(out.baseColour[c], 1.f);
+        }
+        ASSERT_TRUE(out.metallic >= 0.f && out.metallic <= 1.f);
+        ASSERT_TRUE(out.flattenedRoughness >= 0.f && out.flattenedRoughness <= 1.f);
+    }
+}
+
+TEST(LayerStack, survivesStrangeThicknesses) {
+    const float infinity = std::numeric_limits<float>::infinity();
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    for (float strange : {infinity, nan, -1.f, 0.f, 1e-30f, 1e30f}) {
+        for (OpticsModel model : {OpticsModel::energyConserving, OpticsModel::paper}) {
+            for (const char* film : {"lacquer", "soot", "marine_patina_3"}) {
+                const Appearance appearance = look({"copper", film, "cuprite"}, {strange, strange}, model);
+                const V3f sum = test::total(appearance);
+                for (int c = 0; c < 3; ++c) {
+                    EXPECT_TRUE(sum[c] >= 0.f && sum[c] <= 2.f) << film << " " << strange;
+                }
+            }
+        }
+    }
+}
+
+// TRUTHS: a smooth interface of index 1.5 over a Lambertian base of 0.5, light from the normal.
+TEST(LayerStack, interfaceOverALambertianBaseIsSaundersonsSum) {
+    Material base = shippedMaterials().at("copper");
+    Material film;
+    film.scattering = Spectrum::constant(1.f);
+    film.absorption = Spectrum::constant(0.25f); // K/S of R = 0.5
+    film.refractiveIndex = 1.5f;
+    film.roughness = 0.001f;
+    Appearance out;
+    const float opaque[] = {1e4f};
+    StackOptics({&base, &film}).evaluate(opaque, out);
+    expectNear(test::total(out), V3f(0.31607f), 1e-4f);
+    expectNear(out.diffuse, V3f(0.27607f), 1e-4f);
+    film.refractiveIndex = 2.f;
+    StackOptics({&base, &film}).evaluate(opaque, out);
+    expectNear(test::total(out), V3f(0.26529f), 2e-4f);
+}
+
+TEST(LayerStack, paperModelIsThePapersSum) {
+    const auto& library = shippedMaterials();
+    const Material& copper = library.at("copper");
+    const Material& film = library.at("marine_patina_4");
+    const float d = 1.5f;
+    const Appearance out = look({"copper", "marine_patina_4"}, {d}, OpticsModel::paper);
+    Spectrum diffuse, lobe;
+    for (int band = 0; band < bandCount; ++band) {
+        const auto layer = kubelkaMunkLayer<double>(film.absorption[band], film.scattering[band], d);
+        diffuse[band] = static_cast<float>(overBackground<double>(layer, copper.reflectance[band]));
+        lobe[band] = static_cast<float>(copper.reflectance[band] * layer.transmittance * layer.transmittance);
+    }
+    expectNear(out.diffuse, V3f(linearRec709(diffuse)), 1e-5f);
+    expectNear(out.lobes[0].colour, V3f(linearRec709(lobe)), 1e-5f);
+    expectNear(out.lobes[1].colour, film.specularColour, 1e-6f);
+    // Bare metal shows why this is not the default: diffuse and specular are both the whole of it.
+    EXPECT_GT(test::total(look({"copper"}, {}, OpticsModel::paper)).x, 1.5f);
+}
+
+TEST(LayerStack, refusesAStackWithoutABase) {
+    EXPECT_THROW(StackOptics(std::vector<const Material*>{}), RunError);
+    const std::vector<const Material*> many(StackOptics::maxLayers + 2, &shippedMaterials().at("copper"));
+    EXPECT_THROW(StackOptics{many}, RunError);
+}
+
+} // namespace
+} // namespace patina

@@ -1,0 +1,106 @@
+#include "script_context.h"
+
+#include "base/atomic_file.h"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <map>
+
+namespace patina {
+namespace {
+
+std::filesystem::path scriptPath(const std::string& name) {
+    return std::filesystem::path(PATINA_SOURCE_DIR) / "data" / "scripts" / name;
+}
+
+/// The layers of a program: material, thickness, pattern.
+std::vector<std::string> stack(const Program& program) {
+    std::vector<std::string> out;
+    for (const Statement& statement : program.statements) {
+        const auto* coat = std::get_if<Coat>(&statement.action);
+        const auto* erode = std::get_if<Erode>(&statement.action);
+        if (!coat && !erode)
+            continue;
+        const GrowthCall& growth = *(coat ? coat->map : erode->map)->growth;
+        out.push_back(fmt::format("{} {} {}.{}_{}.{}", coat ? coat->material : "-",
+                                  coat ? coat->thicknessUm : erode->thicknessUm, growth.model, growth.rate, growth.step,
+                                  growth.total));
+    }
+    return out;
+}
+
+TEST(ShippedScripts, runThePapersThreeScriptsAsPrinted) {
+    const auto read = [](const std::string& name) { return readProgramFile(scriptPath(name), testContext()); };
+    EXPECT_THAT(stack(read("marine.patina")),
+                testing::ElementsAre("tarnish_1 0.35 BD.linear_1.20", "cuprite_2 1.2 DPD.linear_5.40",
+                                     "marine_patina_3 3 BD.linear_10.20", "marine_patina_4 1.8 DPD.linear_20.40",
+                                     "- 0.5 BD.linear_5.20"));
+    EXPECT_THAT(stack(read("rural.patina")),
+                testing::ElementsAre("tarnish_1 0.25 ST.cubic_1.20", "cuprite_2 1 ST.cubic_5.20",
+                                     "rural_patina_3 1 ST.cubic_10.20", "rural_patina_4 1.1 ST.cubic_15.20"));
+    EXPECT_THAT(stack(read("urban.patina")),
+                testing::ElementsAre("tarnish_1 0.55 RD.linear_1.40", "cuprite_urban_2 1 RD.cubic_10.40",
+                                     "patina_urban_3 4 DPD.cubic_5.40", "patina_urban_4 3 DPD.cubic_10.40",
+                                     "- 0.8 DPD.linear_30.40", "dirt 1.9 BD.linear_5.20"));
+    for (const char* name : {"marine.patina", "rural.patina", "urban.patina"})
+        EXPECT_TRUE(read(name).warnings.empty()) << name;
+}
+
+TEST(ShippedScripts, keepThePapersMissingSemicolon) {
+    const std::string marine = readTextFile(scriptPath("marine.patina"));
+    EXPECT_THAT(marine, testing::HasSubstr("coat marine_patina_3 3.0 texture(BD.linear_10.20)\ncoat marine_patina_4"));
+}
+
+TEST(ShippedScripts, areVerbatimInThePaper) {
+    const std::filesystem::path paper = std::filesystem::path(PATINA_SOURCE_DIR) / ".." / "shared" / "paper.txt";
+    if (!std::filesystem::exists(paper))
+        GTEST_SKIP() << "the paper's text is not there: " << paper;
+    const std::string printed = readTextFile(paper);
+    for (const char* name : {"marine.patina", "rural.patina", "urban.patina"})
+        EXPECT_NE(printed.find(readTextFile(scriptPath(name))), std::string::npos) << name;
+}
+
+TEST(ShippedScripts, tellOneHistoryInSixSteps) {
+    struct Seen {
+        double thicknessUm;
+        int step;
+        int total;
+    };
+    std::map<std::string, Seen> before;
+    for (const char* year : {"00", "06", "12", "18", "24", "30"}) {
+        const Program program = readProgramFile(scriptPath(fmt::format("marine_{}.patina", year)), testContext());
+        EXPECT_TRUE(program.warnings.empty());
+        std::map<std::string, Seen> now;
+        for (const Statement& statement : program.statements) {
+            const auto* coat = std::get_if<Coat>(&statement.action);
+            if (!coat)
+                continue;
+            const GrowthCall& growth = *coat->map->growth;
+            EXPECT_TRUE(growth.ofFull) << statement.text;
+            EXPECT_EQ(growth.label, statement.label);
+            now[statement.label] = {coat->thicknessUm, growth.step, growth.total};
+        }
+        for (const auto& [label, old] : before) {
+            ASSERT_TRUE(now.count(label)) << year << ": " << label;
+            EXPECT_EQ(now[label].thicknessUm, old.thicknessUm) << label;
+            EXPECT_EQ(now[label].total, old.total) << label;
+            EXPECT_GE(now[label].step, old.step) << label;
+        }
+        before = now;
+    }
+    // The last frame is the paper's marine stack: a linear pattern's age is its step.
+    const Program last = readProgramFile(scriptPath("marine_30.patina"), testContext());
+    const Program paper = readProgramFile(scriptPath("marine.patina"), testContext());
+    ASSERT_EQ(last.statements.size(), paper.statements.size());
+    for (std::size_t i = 1; i < 5; ++i) {
+        EXPECT_EQ(coatAt(last, i).material, coatAt(paper, i).material);
+        EXPECT_EQ(coatAt(last, i).thicknessUm, coatAt(paper, i).thicknessUm);
+        EXPECT_EQ(coatAt(last, i).map->growth->model, coatAt(paper, i).map->growth->model);
+        EXPECT_EQ(coatAt(last, i).map->growth->step, coatAt(paper, i).map->growth->step);
+        EXPECT_EQ(coatAt(last, i).map->growth->step, coatAt(last, i).map->growth->total);
+    }
+}
+
+} // namespace
+} // namespace patina

@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds and runs the tests.
+#
+#   tools/test.sh               the default tests (all but those labelled slow or clients), warnings are errors
+#   tools/test.sh --slow        the slow ones and those that run other programs (Blender) as well
+#   tools/test.sh --sanitize    the default tests under the address and undefined-behaviour sanitizers
+set -euo pipefail
+cd "$(dirname "$0")/.."
+bash tools/setup.sh
+
+preset=release
+exclude=(-LE 'slow|clients')
+for option in "$@"; do
+  case "$option" in
+    --slow) exclude=() ;;
+    --sanitize) preset=sanitize ;;
+    *) echo "test.sh: unknown option '$option' (--slow, --sanitize)" >&2; exit 2 ;;
+  esac
+done
+
+cmake --preset "$preset" -DPATINA_WARNINGS_AS_ERRORS=ON
+cmake --build --preset "$preset" -j "$(nproc)"
+ctest --preset "$preset" -j "$(nproc)" "${exclude[@]}"

@@ -1,0 +1,47 @@
+// vdb-patina bake VOLUME MODEL
+
+#include "commands.h"
+#include "console.h"
+#include "existing_volume.h"
+#include "outputs.h"
+
+#include <fmt/format.h>
+
+namespace patina::tool {
+
+namespace {
+
+struct Arguments {
+    std::string volume;
+    std::string model;
+};
+
+void bakeVolume(const Arguments& arguments, const Options& options, Console& console) {
+    const ExistingVolume input = loadExisting(arguments.volume, arguments.model, options, console);
+    const std::string name = std::filesystem::path(arguments.volume).stem().string();
+    const auto folder = outputFolder(options, name);
+    std::vector<std::string> outputs;
+    const StackOptics optics = opticsOf(input.volume, input.materials, options);
+    const BakeSummary summary = writeMaps(input.volume, input.model, optics, options, folder, outputs, console);
+    writeMeshes(input.model, name, folder, outputs, console);
+    console.result(fmt::format("{}: {} files, displacement at most {:.4g} scene units", folder.string(), outputs.size(),
+                               summary.maxDisplacement));
+}
+
+} // namespace
+
+void addBakeCommand(CLI::App& app, Options& options, Action& action) {
+    CLI::App* command = app.add_subcommand("bake", "Maps and subdivided mesh from a volume");
+    auto arguments = std::make_shared<Arguments>();
+    command->add_option("VOLUME", arguments->volume, "A .vdb that `run` wrote")->required();
+    command->add_option("MODEL", arguments->model, "The model it was made from")->required();
+    addGeneralOptions(*command, options);
+    addOutputOption(*command, options);
+    addModelOptions(*command, options);
+    addMapOptions(*command, options);
+    command->callback([&options, &action, arguments] {
+        action = [&options, arguments](Console& console) { bakeVolume(*arguments, options, console); };
+    });
+}
+
+} // namespace patina::tool

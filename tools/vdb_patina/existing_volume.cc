@@ -1,0 +1,24 @@
+#include "existing_volume.h"
+
+#include "data_folder.h"
+
+#include "base/errors.h"
+#include "script/interpreter.h"
+#include "volume/vdb_file.h"
+
+#include <fmt/format.h>
+
+namespace patina::tool {
+
+ExistingVolume loadExisting(const std::string& volumeFile, const std::string& modelName, const Options& options,
+                            Console& console) {
+    LayerVolume volume = readVolume(volumeFile);
+    Model model = loadModel(modelName, options, &volume.scale(), console);
+    if (!volume.provenance.modelHash.empty() && surfaceHash(model.surface) != volume.provenance.modelHash)
+        throw ModelError(modelName,
+                         fmt::format("is not the model that '{}' was made from ('{}')", volumeFile, volume.provenance.model),
+                         "give the same model, with the same --subdivide, --scheme and --atlas");
+    return {std::move(volume), std::move(model), MaterialLibrary::load(findDataFolder())};
+}
+
+} // namespace patina::tool

@@ -1,0 +1,24 @@
+#pragma once
+// A volume from a file together with the model it was made from.
+
+#include "console.h"
+#include "model_input.h"
+#include "optics/material_library.h"
+#include "options.h"
+#include "volume/layer_volume.h"
+
+#include <string>
+
+namespace patina::tool {
+
+struct ExistingVolume {
+    LayerVolume volume;
+    Model model;
+    MaterialLibrary materials;
+};
+
+/// Reads both and checks that they belong together. \throws RunError, ModelError
+ExistingVolume loadExisting(const std::string& volumeFile, const std::string& modelName, const Options& options,
+                            Console& console);
+
+} // namespace patina::tool

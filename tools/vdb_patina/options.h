@@ -1,0 +1,68 @@
+#pragma once
+// The command line's options, the same wherever they make sense.
+
+#include "render/frame.h"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace patina::tool {
+
+enum class ProgressStyle { automatic, bar, plain, json, none };
+
+struct Options {
+    // Where results go, and how much is said.
+    std::string output;  ///< folder; empty: one named after the result
+    std::string report;  ///< file; empty: report.json in the folder
+    ProgressStyle progress = ProgressStyle::automatic;
+    bool verbose = false;
+    bool quiet = false;
+    int threads = 0; ///< 0: all
+
+    // The model.
+    std::string unit = "m";
+    UpAxis up = UpAxis::y;
+    std::string scheme = "automatic";
+    int subdivide = -1;
+    bool atlas = false;
+
+    // The volume.
+    int voxels = 256;
+    double voxelSize = 0.0; ///< scene units; 0: from voxels
+    double exaggeration = 1.0;
+    std::optional<std::uint64_t> seed;
+
+    // The maps and the picture.
+    int resolution = 1024;
+    bool keepExaggeration = false;
+    bool materialId = false;
+    std::string optics = "conserving";
+    int pictureSize = 640;
+    int samples = 32;
+    std::optional<double> azimuth;
+    std::optional<double> elevation;
+
+    // The run.
+    std::vector<std::string> settings; ///< NAME=VALUE
+    double budgetGiB = 0.0;            ///< 0: four fifths of this machine's memory
+    bool dryRun = false;
+    bool force = false;
+    bool resume = false;
+
+    double metresPerUnit() const;
+    std::map<std::string, std::string> settingMap() const;
+};
+
+void addGeneralOptions(CLI::App& app, Options& options);
+void addOutputOption(CLI::App& app, Options& options);
+void addModelOptions(CLI::App& app, Options& options);
+void addVolumeOptions(CLI::App& app, Options& options);
+void addMapOptions(CLI::App& app, Options& options);
+void addPictureOptions(CLI::App& app, Options& options);
+void addRunOptions(CLI::App& app, Options& options);
+
+} // namespace patina::tool

@@ -1,0 +1,100 @@
+#include "outputs.h"
+
+#include "base/atomic_file.h"
+#include "render/camera.h"
+#include "render/displace.h"
+#include "render/film.h"
+#include "render/lights.h"
+#include "render/path_tracer.h"
+#include "render/stack_shader.h"
+#include "surface/mesh_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace patina::tool {
+
+StackOptics opticsOf(const LayerVolume& volume, const MaterialLibrary& materials, const Options& options) {
+    std::vector<const Material*> stack{&materials.at(volume.metal())};
+    for (const std::string& layer : volume.layers())
+        stack.push_back(&materials.at(layer));
+    return StackOptics(stack, options.optics == "paper" ? OpticsModel::paper : OpticsModel::energyConserving);
+}
+
+std::filesystem::path outputFolder(const Options& options, const std::string& name) {
+    const std::filesystem::path folder = options.output.empty() ? name : options.output;
+    makeWritableFolder(folder);
+    return folder;
+}
+
+BakeSummary writeMaps(const LayerVolume& volume, const Model& model, const StackOptics& optics, const Options& options,
+                      const std::filesystem::path& folder, std::vector<std::string>& outputs, Console& console) {
+    BakeOptions bakeOptions;
+    bakeOptions.resolution = options.resolution;
+    bakeOptions.keepExaggeration = options.keepExaggeration;
+    bakeOptions.materialId = options.materialId;
+    MapSet maps;
+    {
+        const ProgressStage stage(console, "bake maps");
+        maps = bake(volume, model.surface, optics, bakeOptions, console);
+    }
+    const ProgressStage stage(console, "write maps");
+    for (MapImage& map : maps.maps) {
+        console.checkpoint();
+        map.texts.emplace_back("patina_program", "vdb-patina " PATINA_VERSION);
+        map.texts.emplace_back("patina_script", volume.provenance.scriptName);
+        map.texts.emplace_back("patina_model", volume.provenance.model);
+        writeExr(map, folder / (map.name + ".exr"));
+        outputs.push_back(map.name + ".exr");
+        map = {}; // written: its memory is free for the rest
+    }
+    return maps.summary;
+}
+
+void writeMeshes(const Model& model, const std::string& name, const std::filesystem::path& folder,
+                 std::vector<std::string>& outputs, Console& console) {
+    const ProgressStage stage(console, "write meshes");
+    writeObj(model.mesh, folder / (name + ".obj"));
+    writePly(model.surface, folder / (name + "_limit.ply"));
+    outputs.push_back(name + ".obj");
+    outputs.push_back(name + "_limit.ply");
+}
+
+void writePicture(const LayerVolume& volume, const Model& model, const StackOptics& optics, const Options& options,
+                  const std::filesystem::path& file, Console& console) {
+    const ProgressStage stage(console, "render " + file.filename().string());
+    const StackShader shader(volume, model.surface, optics);
+    const SurfaceMesh surface = displaced(model.surface, shader.vertexHeights());
+
+    const Imath::Box3f bounds = surface.bounds();
+    CameraView view = automaticView(model.surface, options.up);
+    if (options.azimuth)
+        view.azimuthDegrees = static_cast<float>(*options.azimuth);
+    if (options.elevation)
+        view.elevationDegrees = static_cast<float>(*options.elevation);
+    // The picture takes the object's proportions, within those of a photograph.
+    const Imath::V3f size = bounds.size();
+    const float height = options.up == UpAxis::y ? size.y : size.z;
+    const float depth = options.up == UpAxis::y ? size.z : size.y;
+    const float tilt = view.elevationDegrees * float(M_PI) / 180.f;
+    const float seenHeight = height * std::cos(tilt) + depth * std::sin(std::abs(tilt));
+    const float aspect = std::clamp(std::max(size.x, 0.5f * depth) / std::max(seenHeight, 1e-6f * size.x), 0.7f, 1.8f);
+    RenderOptions render_;
+    render_.width = aspect >= 1.f ? options.pictureSize : static_cast<int>(std::lround(options.pictureSize * aspect));
+    render_.height = aspect >= 1.f ? static_cast<int>(std::lround(options.pictureSize / aspect)) : options.pictureSize;
+    render_.samples = options.samples;
+
+    RenderScene scene;
+    scene.surface = &surface;
+    scene.up = options.up;
+    scene.material = [&](const SurfacePoint& point, const Imath::V3f&) { return shader.bsdf(point); };
+    const Camera camera = Camera::framed(surface.positions, view, float(render_.width) / float(render_.height));
+    const Lights lights = studioLights(options.up, view.azimuthDegrees);
+    const Rendering rendering = render(scene, camera, lights, render_, console);
+    writePng(displayImage(rendering.image), file,
+             {{"Software", "vdb-patina " PATINA_VERSION}, {"Description", volume.provenance.scriptName}});
+}
+
+} // namespace patina::tool

@@ -1,0 +1,36 @@
+#pragma once
+// What several commands make from a volume and its model: maps, meshes, a picture.
+
+#include "console.h"
+#include "export/bake.h"
+#include "model_input.h"
+#include "optics/layer_stack.h"
+#include "optics/material_library.h"
+#include "options.h"
+#include "volume/layer_volume.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace patina::tool {
+
+/// The optics of a volume's metal and layers. \throws RunError where a material is not in the library
+StackOptics opticsOf(const LayerVolume& volume, const MaterialLibrary& materials, const Options& options);
+
+/// The folder for results: -o, or one named after the result. Made, and checked for being writable.
+std::filesystem::path outputFolder(const Options& options, const std::string& name);
+
+/// Bakes and writes all maps. \return their summary; file names are appended to `outputs`
+BakeSummary writeMaps(const LayerVolume& volume, const Model& model, const StackOptics& optics, const Options& options,
+                      const std::filesystem::path& folder, std::vector<std::string>& outputs, Console& console);
+
+/// NAME.obj (control mesh) and NAME_limit.ply.
+void writeMeshes(const Model& model, const std::string& name, const std::filesystem::path& folder,
+                 std::vector<std::string>& outputs, Console& console);
+
+/// A picture of the displaced surface, shaded by the volume's own stack.
+void writePicture(const LayerVolume& volume, const Model& model, const StackOptics& optics, const Options& options,
+                  const std::filesystem::path& file, Console& console);
+
+} // namespace patina::tool

@@ -1,0 +1,27 @@
+#pragma once
+// report.json: what went in, what came out, how long it took.
+
+#include "console.h"
+#include "export/bake.h"
+#include "model_input.h"
+#include "options.h"
+#include "script/interpreter.h"
+#include "volume/layer_statistics.h"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+namespace patina::tool {
+
+/// All but the stages' times, the peak memory and the outputs, which finishReport() adds.
+nlohmann::ordered_json makeReport(const Program& program, const Model& model, const Options& options,
+                                  const RunResult& run, const StackStatistics& stack);
+
+void addMapsToReport(nlohmann::ordered_json& report, const BakeSummary& summary);
+void finishReport(nlohmann::ordered_json& report, const Console& console, const std::vector<std::string>& outputs);
+
+/// Most memory this process has had, bytes.
+double peakMemoryBytes();
+
+} // namespace patina::tool
