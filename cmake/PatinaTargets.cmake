@@ -27,6 +27,7 @@ function(patina_test room)
   endif()
   add_executable(${target} ${TEST_SOURCES})
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
+  target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/tests")
   target_compile_definitions(${target} PRIVATE
     PATINA_SOURCE_DIR="${PROJECT_SOURCE_DIR}" PATINA_PROGRAM="${PROJECT_BINARY_DIR}/vdb-patina")
   target_link_libraries(${target} PRIVATE patina_options ${TEST_LINKS} GTest::gmock GTest::gtest_main)

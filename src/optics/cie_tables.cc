@@ -3,6 +3,7 @@
 namespace patina {
 
 // Numbers of data/cie/cie1931_2deg_d65_5nm.csv, 360 … 830 nm.
+// clang-format off
 const CieTables& cieTables() {
     static const CieTables tables = {
         {
@@ -56,5 +57,6 @@ const CieTables& cieTables() {
     };
     return tables;
 }
+// clang-format on
 
 } // namespace patina

@@ -36,7 +36,9 @@ Matrix3 inverse(const Matrix3& a) {
 }
 
 /// XYZ of a chromaticity with Y = 1.
-V3d xyzOfChromaticity(double x, double y) { return {x / y, 1.0, (1.0 - x - y) / y}; }
+V3d xyzOfChromaticity(double x, double y) {
+    return {x / y, 1.0, (1.0 - x - y) / y};
+}
 
 // Rec.709 primaries, scaled so that the white that the tables give maps to (1, 1, 1) exactly.
 Matrix3 rec709ToXyz() {
@@ -161,11 +163,19 @@ const std::array<Spectrum, 3>& rec709BandWeights() {
     return weights;
 }
 
-V3d linearRec709(const FineSpectrum& reflectance) { return linearRec709FromXyz(xyzFromReflectance(reflectance)); }
-V3d linearRec709(const Spectrum& reflectance) { return linearRec709FromXyz(xyzFromReflectance(reflectance)); }
+V3d linearRec709(const FineSpectrum& reflectance) {
+    return linearRec709FromXyz(xyzFromReflectance(reflectance));
+}
+V3d linearRec709(const Spectrum& reflectance) {
+    return linearRec709FromXyz(xyzFromReflectance(reflectance));
+}
 
-V3d linearRec709FromXyz(const V3d& xyz) { return fromXyz() * xyz; }
-V3d xyzFromLinearRec709(const V3d& rgb) { return toXyz() * rgb; }
+V3d linearRec709FromXyz(const V3d& xyz) {
+    return fromXyz() * xyz;
+}
+V3d xyzFromLinearRec709(const V3d& rgb) {
+    return toXyz() * rgb;
+}
 
 V3d acescgFromXyz(const V3d& xyz) {
     // Bradford adaptation: cone-like responses are scaled by the ratio of the whites.

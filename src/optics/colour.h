@@ -1,5 +1,6 @@
 #pragma once
-// From spectra to colours: CIE 1931 2° observer, illuminant D65, linear Rec.709 (the primaries of sRGB), ACEScg, CIELAB.
+// From spectra to colours: CIE 1931 2° observer, illuminant D65, linear Rec.709 (the primaries of sRGB), ACEScg,
+// CIELAB.
 
 #include "optics/spectrum.h"
 

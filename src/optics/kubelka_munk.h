@@ -75,7 +75,8 @@ struct StackLight {
 
     StackLight() = default;
     StackLight(const LayerLight<Real>& layer)
-        : reflectanceAbove(layer.reflectance), reflectanceBelow(layer.reflectance), transmittance(layer.transmittance) {}
+        : reflectanceAbove(layer.reflectance), reflectanceBelow(layer.reflectance), transmittance(layer.transmittance) {
+    }
 };
 
 /// The stack `top` lying on the stack `bottom`. Associative.
@@ -114,8 +115,8 @@ OpticalThickness<Real> fromTwoBackings(Real overBlack, Real overBacking, Real ba
 /// (ISO 9416, TAPPI T 1214): S d = R / (1 - R²) ln(R (1 - R0 R) / (R - R0)), R the opaque one; 0 <= R0 < R < 1.
 template <typename Real>
 OpticalThickness<Real> fromOpaqueAndThin(Real opaque, Real overBlack) {
-    const Real scattering = opaque / (1 - opaque * opaque) *
-                            std::log(opaque * (1 - overBlack * opaque) / (opaque - overBlack));
+    const Real scattering =
+        opaque / (1 - opaque * opaque) * std::log(opaque * (1 - overBlack * opaque) / (opaque - overBlack));
     return {absorptionOverScattering(opaque) * scattering, scattering};
 }
 

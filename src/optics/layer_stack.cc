@@ -34,6 +34,11 @@ float normalDielectric(float below, float above) {
     return ratio * ratio;
 }
 
+const StackKernel& kernel() {
+    static const StackKernel chosen = stackKernel();
+    return chosen;
+}
+
 /// Pointers to the layers that are there, from bottom to top.
 struct PresentLayers {
     int count = 0;
@@ -46,7 +51,9 @@ V3f clippedToGamut(const float* rgb) {
     return {std::max(rgb[0], 0.f), std::max(rgb[1], 0.f), std::max(rgb[2], 0.f)};
 }
 
-float luminance(const V3f& rgb) { return 0.2126f * rgb.x + 0.7152f * rgb.y + 0.0722f * rgb.z; }
+float luminance(const V3f& rgb) {
+    return 0.2126f * rgb.x + 0.7152f * rgb.y + 0.0722f * rgb.z;
+}
 
 V3f clamped01(const V3f& rgb) {
     return {std::clamp(rgb.x, 0.f, 1.f), std::clamp(rgb.y, 0.f, 1.f), std::clamp(rgb.z, 0.f, 1.f)};
@@ -149,7 +156,7 @@ Spectrum StackOptics::bodyReflectance(const float* thicknessUm) const {
                            &layer.halfOverKappa, present.thicknessUm[k], 0.f};
     }
     Spectrum result;
-    foldBody(input, result);
+    kernel().foldBody(input, result);
     return result;
 }
 
@@ -179,7 +186,7 @@ void StackOptics::evaluateConserving(const float* thicknessUm, Appearance& out) 
     input.wantEdge = airEdge < 1.f;
 
     KernelOutput output;
-    foldConserving(input, output);
+    kernel().foldConserving(input, output);
 
     for (std::size_t i = 0; i < layers_.size(); ++i) {
         Lobe& lobe = out.lobes[i];
@@ -239,8 +246,8 @@ void StackOptics::evaluateConserving(const float* thicknessUm, Appearance& out) 
     flatten(airReflectance, out);
 }
 
-// What metals mirror against what is scattered gives `metallic`; the width is the mean of the lobes' alpha², each by its
-// brightness.
+// What metals mirror against what is scattered gives `metallic`; the width is the mean of the lobes' alpha², each by
+// its brightness.
 void StackOptics::flatten(float airReflectance, Appearance& out) const {
     V3f metal(0.f);
     float brightness = 0.f;
@@ -284,8 +291,8 @@ void StackOptics::evaluatePaper(const float* thicknessUm, Appearance& out) const
         }
         lobes[0][band] = layers_[0].specular[band] * above.transmittance * above.transmittance;
         const float base = layers_[0].reflectance[band];
-        diffuse[band] = above.reflectanceAbove + above.transmittance * above.transmittance * base /
-                                                     (1.f - above.reflectanceBelow * base);
+        diffuse[band] = above.reflectanceAbove +
+                        above.transmittance * above.transmittance * base / (1.f - above.reflectanceBelow * base);
     }
     const auto rgbOf = [](const Spectrum& spectrum) { return clamped01(V3f(linearRec709(spectrum))); };
     out.diffuse = rgbOf(diffuse);

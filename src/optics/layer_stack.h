@@ -20,24 +20,25 @@ enum class OpticsModel {
 struct Lobe {
     Imath::V3f colour{0.f};     ///< specular colour at normal incidence, attenuated by what lies above, linear Rec.709
     Imath::V3f edgeColour{0.f}; ///< the same at grazing incidence, not yet dimmed by what the air interface keeps away
-    float air = 0.f;            ///< the part of `colour` that the interface with the air reflects: it lies above all else
-    float airEdge = 0.f;        ///< the same of `edgeColour`
-    float alpha = 0.3f;         ///< width of the GGX distribution
-    float roughness = 0.3f;     ///< r of the paper
+    float air = 0.f;        ///< the part of `colour` that the interface with the air reflects: it lies above all else
+    float airEdge = 0.f;    ///< the same of `edgeColour`
+    float alpha = 0.3f;     ///< width of the GGX distribution
+    float roughness = 0.3f; ///< r of the paper
 };
 
 /// The reflection of one point, ready for a BSDF or for maps. Linear Rec.709.
 struct Appearance {
     OpticsModel model = OpticsModel::energyConserving;
     Imath::V3f diffuse{0.f}; ///< diffuse reflectance at normal incidence, 0…1
-    /// lobes[i] belongs to the interface above materials[i], base metal first; black where the layer is absent or hidden.
+    /// lobes[i] belongs to the interface above materials[i], base metal first; black where the layer is absent or
+    /// hidden.
     std::vector<Lobe> lobes;
 
     /// The same flattened to one lobe, for renderers that have one: metals reflect `baseColour`, the rest scatters it.
     Imath::V3f baseColour{0.f};
-    float metallic = 0.f;          ///< 0…1
+    float metallic = 0.f;           ///< 0…1
     float flattenedRoughness = 0.f; ///< square root of the GGX alpha, as such renderers have it; 0…1
-    float specular = 0.f;          ///< reflectance of the air interface / 0.08, as such renderers have it; 0…1
+    float specular = 0.f;           ///< reflectance of the air interface / 0.08, as such renderers have it; 0…1
 };
 
 /// Optics of one order of materials; thicknesses vary from point to point.
@@ -68,12 +69,12 @@ class StackOptics {
 
   private:
     struct Layer {
-        Spectrum scattering;   ///< S
-        Spectrum extinction;   ///< K + S
-        Spectrum kappa;        ///< sqrt(K (K + 2 S))
+        Spectrum scattering;    ///< S
+        Spectrum extinction;    ///< K + S
+        Spectrum kappa;         ///< sqrt(K (K + 2 S))
         Spectrum halfOverKappa; ///< 1 / (2 kappa); 0 where kappa is 0
-        Spectrum reflectance;  ///< base: of the metal
-        Spectrum specular;     ///< specular colour of the paper's lobe
+        Spectrum reflectance;   ///< base: of the metal
+        Spectrum specular;      ///< specular colour of the paper's lobe
         float refractiveIndex = 1.f;
         float alpha = 0.f;
         float roughness = 0.f;

@@ -4,6 +4,8 @@
 
 namespace patina {
 
-float ggxAlpha(float paperRoughness) { return std::sqrt(2.f / (1.f / paperRoughness + 2.f)); }
+float ggxAlpha(float paperRoughness) {
+    return std::sqrt(2.f / (1.f / paperRoughness + 2.f));
+}
 
 } // namespace patina

@@ -21,7 +21,7 @@ struct Material {
     Spectrum absorption;  ///< K, 1/µm of solid material; 0 for metals
     Spectrum scattering;  ///< S, 1/µm; 0 for metals
     Spectrum reflectance; ///< metals: at normal incidence, in air. Films: of an opaque layer, without the air interface
-    FineSpectrum fineAbsorption{};  ///< the same three every 5 nm
+    FineSpectrum fineAbsorption{}; ///< the same three every 5 nm
     FineSpectrum fineScattering{};
     FineSpectrum fineReflectance{};
 
@@ -29,9 +29,9 @@ struct Material {
     float roughness = 0.3f;           ///< r of the paper's (N·H)^(1/r), above 0, at most 1
     float refractiveIndex = 1.5f;     ///< of its interface, at least 1 (an effective one where the surface is porous)
 
-    float hardness = 1.f;        ///< erosion spends thickness times hardness
-    float density = 1.f;         ///< solid fraction of the layer, above 0, at most 1
-    float densityKgPerM3 = 0.f;  ///< of the solid; 0 where it is not known
+    float hardness = 1.f;       ///< erosion spends thickness times hardness
+    float density = 1.f;        ///< solid fraction of the layer, above 0, at most 1
+    float densityKgPerM3 = 0.f; ///< of the solid; 0 where it is not known
 
     Imath::V3f swatch{0.5f}; ///< colour of an opaque layer seen in air (interface included), linear Rec.709, 0…1
 };

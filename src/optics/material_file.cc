@@ -1,13 +1,11 @@
 #include "optics/material_file.h"
 
 #include "base/atomic_file.h"
-#include "base/names.h"
 #include "optics/fresnel.h"
 #include "optics/kubelka_munk.h"
-#include "optics/spectrum_file.h"
+#include "optics/toml_reader.h"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,211 +18,6 @@ constexpr double pi = 3.14159265358979323846;
 /// Below this an opaque layer is black; K/S would grow without bound.
 constexpr double blackest = 1e-3;
 
-/// Reads values out of tables, and notes what is wrong with its place.
-class Reader {
-  public:
-    Reader(std::filesystem::path path, std::filesystem::path dataFolder, std::vector<Diagnostic>& findings)
-        : path_(std::move(path)), dataFolder_(std::move(dataFolder)), findings_(findings) {}
-
-    const std::filesystem::path& path() const { return path_; }
-    const std::filesystem::path& dataFolder() const { return dataFolder_; }
-    void setText(const std::string& text) {
-        std::size_t begin = 0;
-        while (begin <= text.size()) {
-            const std::size_t end = std::min(text.find('\n', begin), text.size());
-            lines_.push_back(text.substr(begin, end - begin));
-            begin = end + 1;
-        }
-    }
-
-    SourcePlace placeOf(const toml::source_position& position) const {
-        return {path_.string(), static_cast<int>(position.line), static_cast<int>(position.column)};
-    }
-    SourcePlace placeOf(const toml::node& node) const { return placeOf(node.source().begin); }
-
-    void error(const SourcePlace& place, std::string message, std::string remedy = {}) {
-        Diagnostic finding;
-        finding.place = place;
-        finding.message = std::move(message);
-        finding.remedy = std::move(remedy);
-        if (place.line > 0 && static_cast<std::size_t>(place.line) <= lines_.size()) {
-            finding.sourceLine = lines_[place.line - 1];
-        }
-        findings_.push_back(finding);
-    }
-    void error(const toml::node& node, std::string message, std::string remedy = {}) {
-        error(placeOf(node), std::move(message), std::move(remedy));
-    }
-    void append(const std::vector<Diagnostic>& findings) {
-        findings_.insert(findings_.end(), findings.begin(), findings.end());
-    }
-
-    void allowOnly(const toml::table& table, const std::vector<std::string>& keys) {
-        for (const auto& [key, value] : table) {
-            const std::string name(key.str());
-            if (std::find(keys.begin(), keys.end(), name) == keys.end()) {
-                std::string remedy = didYouMean(name, keys);
-                if (remedy.empty()) {
-                    remedy = fmt::format("known keys: {}", fmt::join(keys, ", "));
-                }
-                error(placeOf(key.source().begin), fmt::format("unknown key '{}'", name), remedy);
-            }
-        }
-    }
-
-    std::optional<double> number(const toml::table& table, const char* key, double least, double most) {
-        const toml::node* node = table.get(key);
-        if (!node) {
-            return std::nullopt;
-        }
-        const std::optional<double> value = node->value<double>();
-        if (!node->is_number() || !value || !std::isfinite(*value)) {
-            error(*node, fmt::format("'{}' must be a number", key));
-            return std::nullopt;
-        }
-        if (*value < least || *value > most) {
-            error(*node, fmt::format("'{}' is {}, outside {}…{}", key, *value, least, most));
-            return std::nullopt;
-        }
-        return value;
-    }
-
-    std::string word(const toml::table& table, const char* key, std::string fallback = {}) {
-        const toml::node* node = table.get(key);
-        if (!node) {
-            return fallback;
-        }
-        if (const auto* text = node->as_string()) {
-            return text->get();
-        }
-        error(*node, fmt::format("'{}' must be text in quotes", key));
-        return fallback;
-    }
-
-    bool truth(const toml::table& table, const char* key) {
-        const toml::node* node = table.get(key);
-        if (!node) {
-            return false;
-        }
-        if (const auto* value = node->as_boolean()) {
-            return value->get();
-        }
-        error(*node, fmt::format("'{}' must be true or false", key));
-        return false;
-    }
-
-    const toml::table* subtable(const toml::table& table, const char* key) {
-        const toml::node* node = table.get(key);
-        if (!node) {
-            return nullptr;
-        }
-        if (const toml::table* found = node->as_table()) {
-            return found;
-        }
-        error(*node, fmt::format("'{}' must be a table", key));
-        return nullptr;
-    }
-
-    /// Factor to 1/µm of the table's `unit`.
-    double perMicrometre(const toml::table& table) {
-        const toml::node* node = table.get("unit");
-        const std::string unit = word(table, "unit");
-        if (unit == "1/um" || unit == "1/µm") {
-            return 1.0;
-        }
-        if (unit == "1/mm") {
-            return 1e-3;
-        }
-        if (unit == "1/cm") {
-            return 1e-4;
-        }
-        if (node && !node->is_string()) {
-            return 1.0; // reported by word()
-        }
-        const SourcePlace place = node ? placeOf(*node) : placeOf(table);
-        error(place, node ? fmt::format("unknown unit '{}'", unit) : std::string("a unit is missing"),
-              "expected unit = \"1/um\", \"1/mm\" or \"1/cm\"");
-        return 1.0;
-    }
-
-    /// `wavelengths_nm` and `values`, or `file` and `column`. Empty when there was an error.
-    std::optional<TabulatedSpectrum> spectrum(const toml::table& table, const std::string& column,
-                                              const SpectrumLimits& limits) {
-        if (const toml::node* file = table.get("file")) {
-            if (table.get("values") || table.get("wavelengths_nm")) {
-                error(*file, "a spectrum comes either from a file or from values, not both");
-                return std::nullopt;
-            }
-            return fileSpectrum(table, *file, column, limits);
-        }
-        std::vector<SourcePlace> places;
-        TabulatedSpectrum result;
-        if (!numbers(table, "wavelengths_nm", result.wavelengthsNm, nullptr) ||
-            !numbers(table, "values", result.values, &places)) {
-            return std::nullopt;
-        }
-        if (result.values.size() != result.wavelengthsNm.size()) {
-            error(*table.get("values"), fmt::format("{} values for {} wavelengths", result.values.size(),
-                                                    result.wavelengthsNm.size()));
-            return std::nullopt;
-        }
-        std::size_t index = 0;
-        const std::string fault = spectrumFault(result, limits, index);
-        if (!fault.empty()) {
-            error(index < places.size() ? places[index] : placeOf(table), fault);
-            return std::nullopt;
-        }
-        return result;
-    }
-
-    std::optional<TabulatedSpectrum> fileSpectrum(const toml::table& table, const toml::node& file,
-                                                  const std::string& column, const SpectrumLimits& limits) {
-        const std::string name = word(table, "file");
-        if (name.empty()) {
-            return std::nullopt;
-        }
-        std::error_code ignored;
-        if (!std::filesystem::is_regular_file(dataFolder_ / name, ignored)) {
-            error(file, fmt::format("no such spectrum file '{}'", name),
-                  fmt::format("paths are relative to {}", dataFolder_.string()));
-            return std::nullopt;
-        }
-        try {
-            return readSpectrumFile(dataFolder_ / name, column, limits);
-        } catch (const ScriptError& problem) {
-            append(problem.diagnostics());
-            return std::nullopt;
-        }
-    }
-
-    bool numbers(const toml::table& table, const char* key, std::vector<double>& out, std::vector<SourcePlace>* places) {
-        const toml::node* node = table.get(key);
-        const toml::array* array = node ? node->as_array() : nullptr;
-        if (!array || array->empty()) {
-            error(node ? *node : static_cast<const toml::node&>(table), fmt::format("'{}' must be a list of numbers", key));
-            return false;
-        }
-        for (const toml::node& element : *array) {
-            const std::optional<double> value = element.value<double>();
-            if (!element.is_number() || !value) {
-                error(element, fmt::format("'{}' must be a list of numbers", key));
-                return false;
-            }
-            out.push_back(*value);
-            if (places) {
-                places->push_back(placeOf(element));
-            }
-        }
-        return true;
-    }
-
-  private:
-    std::filesystem::path path_;
-    std::filesystem::path dataFolder_;
-    std::vector<Diagnostic>& findings_;
-    std::vector<std::string> lines_;
-};
-
 /// R∞ as measured in air, freed of the first surface and of the light that it turns back (inverse Saunderson).
 FineSpectrum withoutInterface(const FineSpectrum& measured, double index) {
     const double k1 = normalReflectance(index, 0.0);
@@ -236,7 +29,7 @@ FineSpectrum withoutInterface(const FineSpectrum& measured, double index) {
     return body;
 }
 
-void readReflectance(Reader& reader, const toml::table& table, MaterialDescription& result) {
+void readReflectance(TomlReader& reader, const toml::table& table, MaterialDescription& result) {
     reader.allowOnly(table, {"file", "column", "wavelengths_nm", "values", "measured"});
     const std::optional<TabulatedSpectrum> spectrum =
         reader.spectrum(table, reader.word(table, "column", "reflectance"), {0.0, 1.0, "reflectance"});
@@ -255,7 +48,7 @@ void readReflectance(Reader& reader, const toml::table& table, MaterialDescripti
     }
 }
 
-void readIndex(Reader& reader, const toml::table& table, MaterialDescription& result) {
+void readIndex(TomlReader& reader, const toml::table& table, MaterialDescription& result) {
     reader.allowOnly(table, {"file"});
     const toml::node* file = table.get("file");
     if (!file) {
@@ -278,8 +71,9 @@ void readIndex(Reader& reader, const toml::table& table, MaterialDescription& re
     (result.material.isMetal ? result.reflectance : result.absorption) = spectrum;
 }
 
-void readScattering(Reader& reader, const toml::table& table, MaterialDescription& result) {
-    reader.allowOnly(table, {"value", "unit", "wavelength_exponent", "hides_at_um", "wavelengths_nm", "values", "file", "column"});
+void readScattering(TomlReader& reader, const toml::table& table, MaterialDescription& result) {
+    reader.allowOnly(
+        table, {"value", "unit", "wavelength_exponent", "hides_at_um", "wavelengths_nm", "values", "file", "column"});
     if (table.get("hides_at_um")) {
         result.hidesAtUm = reader.number(table, "hides_at_um", 1e-3, 1e5).value_or(0.0);
         return;
@@ -309,7 +103,7 @@ void readScattering(Reader& reader, const toml::table& table, MaterialDescriptio
     }
 }
 
-void readMixture(Reader& reader, const toml::table& table, MaterialDescription& result) {
+void readMixture(TomlReader& reader, const toml::table& table, MaterialDescription& result) {
     reader.allowOnly(table, {"parts", "scattering_factor"});
     const toml::node* node = table.get("parts");
     const toml::array* parts = node ? node->as_array() : nullptr;
@@ -342,7 +136,7 @@ void readMixture(Reader& reader, const toml::table& table, MaterialDescription& 
     result.scatteringFactor = reader.number(table, "scattering_factor", 0.01, 100.0).value_or(1.0);
 }
 
-void readRatio(Reader& reader, const toml::table& table, MaterialDescription& result) {
+void readRatio(TomlReader& reader, const toml::table& table, MaterialDescription& result) {
     reader.allowOnly(table, {"file", "column", "wavelengths_nm", "values"});
     const auto spectrum = reader.spectrum(table, reader.word(table, "column", "k_over_s"), {0.0, 1e6, "K/S"});
     if (spectrum) {
@@ -350,11 +144,10 @@ void readRatio(Reader& reader, const toml::table& table, MaterialDescription& re
     }
 }
 
-void readAbsorption(Reader& reader, const toml::table& table, MaterialDescription& result) {
+void readAbsorption(TomlReader& reader, const toml::table& table, MaterialDescription& result) {
     reader.allowOnly(table, {"file", "column", "wavelengths_nm", "values", "unit"});
     const double scale = reader.perMicrometre(table);
-    const auto spectrum =
-        reader.spectrum(table, reader.word(table, "column", "absorption"), {0.0, 1e7, "absorption"});
+    const auto spectrum = reader.spectrum(table, reader.word(table, "column", "absorption"), {0.0, 1e7, "absorption"});
     if (spectrum) {
         result.absorption = spectrum->fine();
         for (double& value : *result.absorption) {
@@ -373,7 +166,7 @@ MaterialDescription readMaterialFile(const std::filesystem::path& path, const st
     Material& material = result.material;
     material.name = path.stem().string();
 
-    Reader reader(path, dataFolder, findings);
+    TomlReader reader(path, dataFolder, findings);
     const std::string text = readTextFile(path);
     reader.setText(text);
     toml::table file;

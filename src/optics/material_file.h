@@ -1,5 +1,6 @@
 #pragma once
-// One `data/materials/NAME.toml`, read but not yet resolved: mixtures still name their parts. docs/optics.md lists the keys.
+// One `data/materials/NAME.toml`, read but not yet resolved: mixtures still name their parts. docs/optics.md lists the
+// keys.
 
 #include "base/errors.h"
 #include "optics/material.h"

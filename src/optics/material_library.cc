@@ -55,8 +55,8 @@ void resolveFilm(const MaterialDescription& description, Material& material) {
     FineSpectrum ratio{};
     if (description.reflectance || description.ratio) {
         for (int i = 0; i < fineCount; ++i) {
-            ratio[i] = description.ratio ? (*description.ratio)[i]
-                                         : absorptionOverScattering((*description.reflectance)[i]);
+            ratio[i] =
+                description.ratio ? (*description.ratio)[i] : absorptionOverScattering((*description.reflectance)[i]);
         }
     }
     if (description.hidesAtUm > 0.0) {
@@ -80,8 +80,7 @@ void finish(Material& material) {
         const double k1 = normalReflectance(material.refractiveIndex, 0.0);
         const double k2 = diffuseInterface(material.refractiveIndex).internal;
         for (int i = 0; i < fineCount; ++i) {
-            material.fineReflectance[i] =
-                infiniteReflectance(material.fineAbsorption[i], material.fineScattering[i]);
+            material.fineReflectance[i] = infiniteReflectance(material.fineAbsorption[i], material.fineScattering[i]);
             inAir[i] = saunderson(material.fineReflectance[i], k1, k2);
         }
         material.specularColour = V3f(static_cast<float>(k1));
@@ -182,7 +181,8 @@ MaterialLibrary MaterialLibrary::load(const std::filesystem::path& dataFolder) {
     const std::filesystem::path folder = dataFolder / "materials";
     std::error_code error;
     std::vector<std::filesystem::path> paths;
-    for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error)) {
         if (entry->path().extension() == ".toml") {
             paths.push_back(entry->path());
         }

@@ -91,7 +91,9 @@ Position positionOf(float value, int count) {
     return {below, scaled - below};
 }
 
-float mix(float a, float b, float weight) { return a + weight * (b - a); }
+float mix(float a, float b, float weight) {
+    return a + weight * (b - a);
+}
 
 LobeAlbedo mix(const LobeAlbedo& a, const LobeAlbedo& b, float weight) {
     return {mix(a.flat, b.flat, weight), mix(a.rising, b.rising, weight)};
@@ -107,7 +109,9 @@ float ggxDistribution(const V3f& half, float alpha) {
     return a2 / (pi * t * t);
 }
 
-float smithMasking(const V3f& direction, float alpha) { return 1.f / (1.f + lambda(direction, alpha)); }
+float smithMasking(const V3f& direction, float alpha) {
+    return 1.f / (1.f + lambda(direction, alpha));
+}
 
 float smithVisibility(const V3f& wo, const V3f& wi, float alpha) {
     // cos (1 + 2 lambda) = sqrt(cos² + alpha² sin²), so 4 cos_o cos_i (1 + lambda_o + lambda_i) has no tangent in it.
@@ -137,7 +141,8 @@ LobeAlbedo lobeAlbedo(float cosine, float alpha) {
     const Position c = positionOf(cosine, cosineCount);
     const auto& low = table.directional[a.below];
     const auto& high = table.directional[a.below + 1];
-    return mix(mix(low[c.below], low[c.below + 1], c.weight), mix(high[c.below], high[c.below + 1], c.weight), a.weight);
+    return mix(mix(low[c.below], low[c.below + 1], c.weight), mix(high[c.below], high[c.below + 1], c.weight),
+               a.weight);
 }
 
 LobeAlbedo meanLobeAlbedo(float alpha) {

@@ -15,9 +15,13 @@ constexpr float pi = 3.14159265358979f;
 /// Sharper than this is a mirror to any picture, and too sharp for single precision.
 constexpr float sharpestAlpha = 0.005f;
 
-float brightest(const V3f& colour) { return std::max({colour.x, colour.y, colour.z, 0.f}); }
+float brightest(const V3f& colour) {
+    return std::max({colour.x, colour.y, colour.z, 0.f});
+}
 
-bool isBlack(const Lobe& lobe) { return brightest(lobe.colour) <= 0.f && brightest(lobe.edgeColour) <= 0.f; }
+bool isBlack(const Lobe& lobe) {
+    return brightest(lobe.colour) <= 0.f && brightest(lobe.edgeColour) <= 0.f;
+}
 
 } // namespace
 

@@ -14,11 +14,15 @@ constexpr int bandCount = 16;
 constexpr double firstBandNm = 410.0;
 constexpr double bandStepNm = 18.0;
 /// Wavelength of a band, nanometres: 410, 428 … 680.
-constexpr double bandWavelengthNm(int band) { return firstBandNm + bandStepNm * band; }
+constexpr double bandWavelengthNm(int band) {
+    return firstBandNm + bandStepNm * band;
+}
 
 /// The 5 nm reference set: 380, 385 … 780 nm.
 constexpr int fineCount = 81;
-constexpr double fineWavelengthNm(int sample) { return 380.0 + 5.0 * sample; }
+constexpr double fineWavelengthNm(int sample) {
+    return 380.0 + 5.0 * sample;
+}
 
 /// A quantity per band (reflectance, or 1/µm).
 struct alignas(64) Spectrum {

@@ -68,8 +68,8 @@ std::string spectrumFault(const TabulatedSpectrum& spectrum, const SpectrumLimit
     }
     for (index = 1; index < nm.size(); ++index) {
         if (nm[index] - nm[index - 1] > longestStepNm && nm[index] > 400.0 && nm[index - 1] < 700.0) {
-            return fmt::format("a gap from {} to {} nm; at most {} nm may lie between samples", nm[index - 1], nm[index],
-                               longestStepNm);
+            return fmt::format("a gap from {} to {} nm; at most {} nm may lie between samples", nm[index - 1],
+                               nm[index], longestStepNm);
         }
     }
     index = nm.empty() ? 0 : nm.size() - 1;
@@ -124,8 +124,8 @@ TabulatedSpectrum readSpectrumFile(const std::filesystem::path& path, const std:
         }
         const auto numberAt = [&](std::size_t index) {
             if (index >= cells.size()) {
-                fail(path, lineNumber, static_cast<int>(line.size()) + 1, "a number is missing at the end of the line", {},
-                     line);
+                fail(path, lineNumber, static_cast<int>(line.size()) + 1, "a number is missing at the end of the line",
+                     {}, line);
             }
             const Cell& cell = cells[index];
             double value = 0.0;

@@ -33,10 +33,15 @@ struct KernelOutput {
     float edge[3];                              ///< what the metal would reflect were it perfect
 };
 
-/// Kubelka–Munk of the layers over the base; interfaces are left out.
-void foldBody(const KernelInput& input, Spectrum& result);
+/// The two loops, built for one width of register.
+struct StackKernel {
+    /// Kubelka–Munk of the layers over the base; interfaces are left out.
+    void (*foldBody)(const KernelInput& input, Spectrum& result);
+    /// The default model (docs/optics.md, "Glossy and diffuse").
+    void (*foldConserving)(const KernelInput& input, KernelOutput& output);
+};
 
-/// The default model (docs/optics.md, "Glossy and diffuse").
-void foldConserving(const KernelInput& input, KernelOutput& output);
+/// The widest build up to `width` numbers in a register that this machine can run. All give the same bits.
+StackKernel stackKernel(int width = 16);
 
 } // namespace patina

@@ -9,7 +9,9 @@ namespace patina {
 
 namespace {
 
-float radians(float degrees) { return degrees * float(M_PI) / 180.f; }
+float radians(float degrees) {
+    return degrees * float(M_PI) / 180.f;
+}
 
 std::vector<Imath::V3f> corners(const Imath::Box3f& box) {
     std::vector<Imath::V3f> points;

@@ -18,10 +18,11 @@ struct CameraRay {
 /// Where the camera stands relative to the object it looks at.
 struct CameraView {
     UpAxis up = UpAxis::z;
-    float azimuthDegrees = 0.f;     ///< 0: the model's front (frame.h); positive: walks to the right, around the model
-    float elevationDegrees = 15.f;  ///< above the horizon, -90…90
-    float fieldOfViewDegrees = 22.f; ///< over the shorter side of the picture; 22 is a 90 mm portrait lens, 50 a wide one
-    float fill = 0.86f;             ///< the part of the picture's tighter side that the object takes up, 0…1
+    float azimuthDegrees = 0.f;    ///< 0: the model's front (frame.h); positive: walks to the right, around the model
+    float elevationDegrees = 15.f; ///< above the horizon, -90…90
+    float fieldOfViewDegrees =
+        22.f;           ///< over the shorter side of the picture; 22 is a 90 mm portrait lens, 50 a wide one
+    float fill = 0.86f; ///< the part of the picture's tighter side that the object takes up, 0…1
 };
 
 /// The view a photographer would take: statues from a little above and aside, flat things from well above, open sheets
@@ -47,7 +48,7 @@ class Camera {
 
   private:
     Imath::V3f position_, right_, upward_, forward_;
-    float halfWidth_ = 1.f;  ///< of the picture plane at distance 1
+    float halfWidth_ = 1.f; ///< of the picture plane at distance 1
     float halfHeight_ = 1.f;
 };
 

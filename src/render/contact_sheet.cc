@@ -15,9 +15,9 @@ namespace {
 
 // OpenImageIO searches the folders of the system for a name; Debian's fonts-dejavu-core is what setup installs.
 const char* const fontNames[] = {"DejaVuSans", "LiberationSans-Regular", "FreeSans", "NotoSans-Regular"};
-const char* const fontFolders[] = {"/usr/share/fonts/truetype/dejavu", "/usr/share/fonts/truetype/liberation",
+const char* const fontFolders[] = {"/usr/share/fonts/truetype/dejavu",      "/usr/share/fonts/truetype/liberation",
                                    "/usr/share/fonts/truetype/liberation2", "/usr/share/fonts/truetype/freefont",
-                                   "/usr/share/fonts/truetype/noto", "/usr/share/fonts/TTF"};
+                                   "/usr/share/fonts/truetype/noto",        "/usr/share/fonts/TTF"};
 
 std::string findFont() {
     std::error_code ignored;
@@ -101,9 +101,9 @@ ContactSheet makeContactSheet(const std::vector<LabelledImage>& images, const Co
             sheet.image.setRgb(x, y, options.paper);
 
     // Letters stand a third of their height above the bottom of their band.
-    sheet.hasText = drawText(sheet.image, options.title, 0.5f * float(sheet.image.width),
-                             float(gap) + 1.25f * float(titleLetters), titleLetters, options.ink, TextAlign::centre,
-                             float(sheet.image.width - 2 * gap));
+    sheet.hasText =
+        drawText(sheet.image, options.title, 0.5f * float(sheet.image.width), float(gap) + 1.25f * float(titleLetters),
+                 titleLetters, options.ink, TextAlign::centre, float(sheet.image.width - 2 * gap));
     for (int i = 0; i < count; ++i) {
         const LabelledImage& entry = images[std::size_t(i)];
         const int left = gap + (i % columns) * (cellWidth + gap);

@@ -9,7 +9,7 @@
 namespace patina {
 
 struct LabelledImage {
-    Image image; ///< encoded for display, 3 channels
+    Image image;       ///< encoded for display, 3 channels
     std::string label; ///< below the picture; may be empty
 };
 
@@ -23,7 +23,7 @@ struct ContactSheetOptions {
 };
 
 struct ContactSheet {
-    Image image;      ///< encoded for display
+    Image image;         ///< encoded for display
     bool hasText = true; ///< false where words were wanted and no font was found: they are left out
 };
 
@@ -33,8 +33,8 @@ ContactSheet makeContactSheet(const std::vector<LabelledImage>& images, const Co
 
 enum class TextAlign { left, centre, right };
 
-/// Draws one line of text; (x, y) is the left end, middle or right end of its baseline. Text wider than `maxWidth` (where
-/// that is above 0) is drawn smaller, down to half its height. \returns false where no font was found.
+/// Draws one line of text; (x, y) is the left end, middle or right end of its baseline. Text wider than `maxWidth`
+/// (where that is above 0) is drawn smaller, down to half its height. \returns false where no font was found.
 bool drawText(Image& image, const std::string& text, float x, float y, int height, const Imath::V3f& ink,
               TextAlign align = TextAlign::left, float maxWidth = 0.f);
 

@@ -31,7 +31,8 @@ Places groupByPlace(const std::vector<V3f>& positions) {
     std::stable_sort(places.members.begin(), places.members.end(),
                      [&](int a, int b) { return representative[std::size_t(a)] < representative[std::size_t(b)]; });
     for (std::size_t i = 0; i < places.members.size(); ++i)
-        if (i == 0 || representative[std::size_t(places.members[i])] != representative[std::size_t(places.members[i - 1])])
+        if (i == 0 ||
+            representative[std::size_t(places.members[i])] != representative[std::size_t(places.members[i - 1])])
             places.starts.push_back(int(i));
     places.starts.push_back(int(places.members.size()));
     return places;

@@ -11,16 +11,16 @@ float smoothStep(float from, float to, float x) {
     return t * t * (3.f - 2.f * t);
 }
 
-Imath::V3f mix(const Imath::V3f& a, const Imath::V3f& b, float t) { return a * (1.f - t) + b * t; }
+Imath::V3f mix(const Imath::V3f& a, const Imath::V3f& b, float t) {
+    return a * (1.f - t) + b * t;
+}
 
 // The set, in units in which a white card on the floor is about 1: a broad main box to the left, a weaker one filling
 // from the right, a strip behind on each side for the outline, and a lid.
 const StudioEnvironment::SoftBox studioBoxes[] = {
-    {-58.f, 30.f, 20.f, 34.f, {3.3f, 3.25f, 3.15f}},
-    {62.f, 20.f, 10.f, 30.f, {1.5f, 1.53f, 1.58f}},
-    {-150.f, 26.f, 9.f, 34.f, {3.2f, 3.2f, 3.2f}},
-    {138.f, 28.f, 9.f, 34.f, {3.6f, 3.65f, 3.7f}},
-    {180.f, 76.f, 24.f, 16.f, {1.5f, 1.5f, 1.5f}},
+    {-58.f, 30.f, 20.f, 34.f, {2.9f, 2.86f, 2.8f}}, {62.f, 20.f, 10.f, 30.f, {1.4f, 1.43f, 1.48f}},
+    {-150.f, 26.f, 9.f, 34.f, {2.9f, 2.9f, 2.9f}},  {138.f, 28.f, 9.f, 34.f, {3.2f, 3.24f, 3.3f}},
+    {180.f, 76.f, 24.f, 16.f, {1.4f, 1.4f, 1.4f}},
 };
 
 } // namespace
@@ -40,7 +40,7 @@ StudioEnvironment::StudioEnvironment(UpAxis up, float azimuthDegrees) : set_(upr
 }
 
 Imath::V3f StudioEnvironment::radiance(const Imath::V3f& direction) const {
-    static const Imath::V3f zenith(0.12f, 0.128f, 0.14f), horizon(0.30f, 0.30f, 0.30f);
+    static const Imath::V3f zenith(0.10f, 0.106f, 0.115f), horizon(0.25f, 0.25f, 0.25f);
     static const Imath::V3f edge(0.18f, 0.177f, 0.174f), nadir(0.10f, 0.098f, 0.096f);
     const float height = direction ^ set_.normal;
     Imath::V3f light = height >= 0.f ? mix(horizon, zenith, std::sqrt(std::min(height, 1.f)))
@@ -54,8 +54,8 @@ Imath::V3f StudioEnvironment::radiance(const Imath::V3f& direction) const {
         const float v = std::abs((direction ^ box.frame.bitangent) / (facing * box.halfHeight));
         if (u >= 1.f || v >= 1.f)
             continue;
-        // Brightest in the middle, as a lamp behind cloth is; the cloth's edge is a tenth of it wide.
-        const float edges = (1.f - smoothStep(0.85f, 1.f, u)) * (1.f - smoothStep(0.85f, 1.f, v));
+        // Brightest in the middle, as a lamp behind cloth is; the cloth's edge is a third of it wide.
+        const float edges = (1.f - smoothStep(0.65f, 1.f, u)) * (1.f - smoothStep(0.65f, 1.f, v));
         const float lamp = 1.f - 0.35f * std::min(u * u + v * v, 1.f);
         light = mix(light, box.radiance * lamp, edges);
     }

@@ -46,7 +46,7 @@ class StudioEnvironment final : public Environment {
 
   private:
     struct Box {
-        Frame frame; ///< normal: to the box's centre
+        Frame frame;                 ///< normal: to the box's centre
         float halfWidth, halfHeight; ///< tangents of the angles
         Imath::V3f radiance;
     };

@@ -70,8 +70,8 @@ void writePng(const Image& encoded, const std::filesystem::path& path, const Ima
     spec.attribute("png:compressionLevel", 6);
     for (const auto& [name, text] : metadata)
         spec.attribute(name, text);
-    if (!output->open(file.temporary().string(), spec) ||
-        !output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) || !output->close())
+    if (!output->open(file.temporary().string(), spec) || !output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) ||
+        !output->close())
         throw RunError(path.string(), "cannot write the picture: " + output->geterror());
     file.commit();
 }

@@ -33,8 +33,8 @@ inline Frame frameAround(const Imath::V3f& normal) {
             normal};
 }
 
-/// The frame of a set: `normal` is up, `-bitangent` the way to the viewer who stands at azimuth 0 (the front of a model:
-/// -y where z is up, +z where y is up), turned about up by `azimuthDegrees`, counter-clockwise seen from above.
+/// The frame of a set: `normal` is up, `-bitangent` the way to the viewer who stands at azimuth 0 (the front of a
+/// model: -y where z is up, +z where y is up), turned about up by `azimuthDegrees`, counter-clockwise seen from above.
 inline Frame uprightFrame(UpAxis up, float azimuthDegrees = 0.f) {
     const Frame standing = up == UpAxis::z ? Frame{} : Frame{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
     const float angle = azimuthDegrees * float(M_PI) / 180.f;

@@ -10,7 +10,9 @@ namespace {
 
 constexpr float pi = float(M_PI);
 
-float luminance(const Imath::V3f& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
+float luminance(const Imath::V3f& c) {
+    return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
+}
 
 bool usable(const Imath::V3f& c) {
     return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z) && c.x >= 0.f && c.y >= 0.f && c.z >= 0.f;
@@ -60,8 +62,8 @@ Lights::Lights(std::shared_ptr<const Environment> environment, std::optional<Key
         for (int column = 0; column < columns; ++column) {
             float sum = 0.f;
             for (int i = 0; i < looks * looks; ++i) {
-                const Imath::V3f light = environment_->radiance(frame_.toWorld(cellDirection(
-                    row, column, (float(i / looks) + 0.5f) / looks, (float(i % looks) + 0.5f) / looks)));
+                const Imath::V3f light = environment_->radiance(frame_.toWorld(
+                    cellDirection(row, column, (float(i / looks) + 0.5f) / looks, (float(i % looks) + 0.5f) / looks)));
                 if (!usable(light))
                     throw RunError("environment", "its radiance is negative or not finite in some direction");
                 sum += luminance(light);
@@ -116,8 +118,8 @@ Lights::Table Lights::makeTable(const std::vector<float>& luminances, const Imat
         for (int column = 0; column < columns; ++column) {
             const float phi = 2.f * pi * (float(column) + 0.5f) / columns;
             const Imath::V3f direction(r * std::cos(phi), r * std::sin(phi), z);
-            // The true normal may be 20 degrees off the table's: what the table takes to be below it keeps a little.
-            const double cosine = std::max(direction ^ normal, 0.f) + 0.06f;
+            // The true normal may be 14 degrees off the table's: what the table takes to be below it keeps a little.
+            const double cosine = std::max(direction ^ normal, 0.f) + 0.04f;
             double& weight = weights[std::size_t(column)];
             weight = skyOnly && z < 0.f ? 0.0 : luminances[std::size_t(row) * columns + std::size_t(column)] * cosine;
             sum += weight;
@@ -135,8 +137,8 @@ Lights::Table Lights::makeTable(const std::vector<float>& luminances, const Imat
 
 const Lights::Table& Lights::tableFor(const Imath::V3f& normal) const {
     const Imath::V3f n = frame_.toLocal(normal);
-    const int down = std::clamp(int(std::acos(std::clamp(n.z, -1.f, 1.f)) / pi * (normalsDown - 1) + 0.5f), 0,
-                                normalsDown - 1);
+    const int down =
+        std::clamp(int(std::acos(std::clamp(n.z, -1.f, 1.f)) / pi * (normalsDown - 1) + 0.5f), 0, normalsDown - 1);
     const int around = int((std::atan2(n.y, n.x) / (2.f * pi) + 1.f) * normalsAround + 0.5f) % normalsAround;
     return tables_[std::size_t(down * normalsAround + around)];
 }
@@ -209,7 +211,7 @@ Lights studioLights(UpAxis up, float azimuthDegrees) {
                      set.normal * std::sin(elevation))
                         .normalized();
     key.angularRadiusDegrees = 5.f;
-    key.irradiance = Imath::V3f(1.75f, 1.7f, 1.62f);
+    key.irradiance = Imath::V3f(1.75f, 1.71f, 1.65f);
     return Lights(std::make_shared<StudioEnvironment>(up, azimuthDegrees), key, up, true);
 }
 

@@ -12,9 +12,9 @@ namespace patina {
 /// A sun-like disc infinitely far away. Its angular radius sets how soft the shadows are (the sun's is 0.27 degrees, a
 /// one-metre umbrella two metres away about 14).
 struct KeyLight {
-    Imath::V3f direction{0, 0, 1};  ///< unit, towards the light
+    Imath::V3f direction{0, 0, 1};    ///< unit, towards the light
     float angularRadiusDegrees = 4.f; ///< 0.05…60
-    Imath::V3f irradiance{1, 1, 1}; ///< on a surface that faces it, linear Rec.709
+    Imath::V3f irradiance{1, 1, 1};   ///< on a surface that faces it, linear Rec.709
 
     /// The radiance of the disc: a disc of half-angle a irradiates a facing surface by pi sin² a times its radiance.
     Imath::V3f radiance() const;
@@ -24,11 +24,11 @@ struct KeyLight {
 /// Immutable after construction; safe from any thread.
 class Lights {
   public:
-    enum Source { environment, keyLight, sourceCount };
+    enum Source { environment, keyLight };
 
     /// Environment and, optionally, a key light. `up` is the axis along which the tables of the environment stand.
-    /// With `skyOnly` no shadow rays are sent below the horizon: right for a set with a floor, and for one without it the
-    /// light from below is still found by paths that go there.
+    /// With `skyOnly` no shadow rays are sent below the horizon: right for a set with a floor, and for one without it
+    /// the light from below is still found by paths that go there.
     /// \throws RunError for a key light out of range or a radiance that is negative or not finite.
     explicit Lights(std::shared_ptr<const Environment> environment, std::optional<KeyLight> key = {},
                     UpAxis up = UpAxis::z, bool skyOnly = false);
@@ -42,7 +42,8 @@ class Lights {
         Imath::V3f radiance;  ///< of this source alone
         float pdf;            ///< per solid angle; 0: nothing to see
     };
-    /// For a surface with this normal: the environment is sampled in proportion to its radiance times, roughly, the cosine.
+    /// For a surface with this normal: the environment is sampled in proportion to its radiance times, roughly, the
+    /// cosine.
     Sample sample(Source source, const Imath::V3f& normal, const Imath::V2f& position) const;
     /// Density with which sample() of this source draws a direction for this normal.
     float pdf(Source source, const Imath::V3f& normal, const Imath::V3f& direction) const;
@@ -63,11 +64,11 @@ class Lights {
     float keyChance_ = 0.f;
 
     // The sphere in cells of equal solid angle: `columns` around, `rows` along the height above the horizon. One table
-    // for each of a few normals, 30 degrees apart.
-    static constexpr int columns = 128;
-    static constexpr int rows = 64;
-    static constexpr int normalsAround = 12;
-    static constexpr int normalsDown = 7;
+    // for each of a few normals, 20 degrees apart.
+    static constexpr int columns = 192;
+    static constexpr int rows = 96;
+    static constexpr int normalsAround = 18;
+    static constexpr int normalsDown = 10;
     struct Table {
         std::vector<float> rowCumulative;    ///< ends at 1
         std::vector<float> columnCumulative; ///< of each row, ends at 1

@@ -22,9 +22,13 @@ namespace {
 constexpr int tileSize = 16;
 constexpr int drawsPerVertex = 6;
 
-float largest(const V3f& c) { return std::max({c.x, c.y, c.z}); }
+float largest(const V3f& c) {
+    return std::max({c.x, c.y, c.z});
+}
 
-bool isFinite(const V3f& c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); }
+bool isFinite(const V3f& c) {
+    return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z);
+}
 
 float powerHeuristic(float mine, float other) {
     // By the ratio, so that squares of large densities do not overflow.
@@ -33,7 +37,18 @@ float powerHeuristic(float mine, float other) {
 }
 
 // A tent over -1…1 by inverting its distribution.
-float tent(float u) { return u < 0.5f ? std::sqrt(2.f * u) - 1.f : 1.f - std::sqrt(2.f - 2.f * u); }
+float tent(float u) {
+    return u < 0.5f ? std::sqrt(2.f * u) - 1.f : 1.f - std::sqrt(2.f - 2.f * u);
+}
+
+// Lights are sampled by radiance times cosine, which is all that a perfectly diffuse surface asks for: there, light met
+// by chance would only add noise.
+bool leavesLightsToShadowRays(const LambertBsdf&) {
+    return true;
+}
+bool leavesLightsToShadowRays(const PatinaBsdf&) {
+    return false;
+}
 
 // One path, from the camera to where its light came from.
 class PathWalk {
@@ -62,7 +77,8 @@ class PathWalk {
     V3f origin_{0.f}, direction_{0.f};
     V3f light_{0.f};
     V3f throughput_{1.f};
-    V3f normal_{0.f};         ///< of the surface that the ray left
+    V3f normal_{0.f};          ///< of the surface that the ray left
+    bool lightsDone_ = false;  ///< the surface that the ray left has all direct light already
     float directionPdf_ = 0.f; ///< of the ray, by its BSDF
     int depth_ = 0;
     std::uint64_t rays_ = 0;
@@ -89,8 +105,10 @@ void PathWalk::sampleLight(const Bsdf& bsdf, const StagePoint& point, const V3f&
     if (stage_.facesFloor(point, towards.direction))
         return;
     ++rays_;
-    if (!stage_.blocked(point, towards.direction))
-        add(throughput_ * reflected * powerHeuristic(density, bsdf.pdf(wo, wi)), depth_ > 0);
+    if (stage_.blocked(point, towards.direction))
+        return;
+    const float weight = leavesLightsToShadowRays(bsdf) ? 1.f : powerHeuristic(density, bsdf.pdf(wo, wi));
+    add(throughput_ * reflected * weight, depth_ > 0);
 }
 
 template <typename Bsdf>
@@ -119,6 +137,7 @@ bool PathWalk::scatter(const Bsdf& bsdf, const StagePoint& point) {
             return false;
         throughput_ /= survival;
     }
+    lightsDone_ = leavesLightsToShadowRays(bsdf);
     directionPdf_ = next.pdf;
     direction_ = point.shading.toWorld(next.wi).normalized();
     origin_ = point.origin;
@@ -127,6 +146,8 @@ bool PathWalk::scatter(const Bsdf& bsdf, const StagePoint& point) {
 }
 
 void PathWalk::meetLights() {
+    if (lightsDone_)
+        return;
     V3f light(0.f);
     for (const auto source : {Lights::environment, Lights::keyLight}) {
         // As likely as the shadow ray of the surface that the path comes from was to go this way.

@@ -14,9 +14,10 @@ namespace patina {
 struct RenderOptions {
     int width = 640;
     int height = 640;
-    int samples = 32;       ///< paths per pixel; powers of two are spread most evenly
-    int maxDepth = 4;       ///< surfaces a path may visit, 1: direct light only
-    float indirectClamp = 6.f; ///< light that arrives after two or more bounces counts at most this much per path (no fireflies); 1 is about white
+    int samples = 32;          ///< paths per pixel; powers of two are spread most evenly
+    int maxDepth = 4;          ///< surfaces a path may visit, 1: direct light only
+    float indirectClamp = 6.f; ///< light that arrives after two or more bounces counts at most this much per path (no
+                               ///< fireflies); 1 is about white
     std::uint64_t seed = 0;
 };
 
@@ -25,8 +26,8 @@ struct Rendering {
     std::uint64_t rays = 0; ///< traced, shadow rays included
 };
 
-/// Path tracing with multiple importance sampling between lights and BSDF (power heuristic), a tent filter of one pixel's
-/// radius and Russian roulette from the third surface on. The same bits on any number of threads.
+/// Path tracing with multiple importance sampling between lights and BSDF (power heuristic), a tent filter of one
+/// pixel's radius and Russian roulette from the third surface on. The same bits on any number of threads.
 /// \throws RunError where there is nothing to render or an option is out of range; Interrupted.
 Rendering render(const RenderScene& scene, const Camera& camera, const Lights& lights, const RenderOptions& options,
                  Progress& progress);

@@ -25,17 +25,20 @@ std::uint32_t scrambleReversed(std::uint32_t v, std::uint32_t seed) {
     return v;
 }
 
-// Second dimension of the Sobol' sequence. Its matrix is Pascal's triangle modulo 2, whose columns follow from
-// c_{k+1} = c_k ^ (c_k >> 1).
-std::uint32_t sobolSecond(std::uint32_t index) {
-    std::uint32_t result = 0;
-    for (std::uint32_t column = 0x80000000u; index; index >>= 1, column ^= column >> 1)
-        if (index & 1u)
-            result ^= column;
-    return result;
+// Second dimension of the Sobol' sequence, with the first digit as the lowest bit. Its matrix is Pascal's triangle
+// modulo 2: digit r is the sum of the index's bits c of which r is a subset, so it is summed one bit of c at a time.
+std::uint32_t sobolSecondReversed(std::uint32_t index) {
+    index ^= (index & 0xAAAAAAAAu) >> 1;
+    index ^= (index & 0xCCCCCCCCu) >> 2;
+    index ^= (index & 0xF0F0F0F0u) >> 4;
+    index ^= (index & 0xFF00FF00u) >> 8;
+    index ^= index >> 16;
+    return index;
 }
 
-float unit(std::uint32_t word) { return float(word >> 8) * (1.f / 16777216.f); }
+float unit(std::uint32_t word) {
+    return float(word >> 8) * (1.f / 16777216.f);
+}
 
 } // namespace
 
@@ -46,7 +49,7 @@ Imath::V2f PixelSampler::next2() {
     const std::uint32_t index = reverseBits(scrambleReversed(reverseBits(sample_), seed[0]));
     // The first dimension is the index with its bits reversed; scrambling wants it reversed once more.
     const std::uint32_t first = reverseBits(scrambleReversed(index, seed[1]));
-    const std::uint32_t second = reverseBits(scrambleReversed(reverseBits(sobolSecond(index)), seed[2]));
+    const std::uint32_t second = reverseBits(scrambleReversed(sobolSecondReversed(index), seed[2]));
     return {unit(first), unit(second)};
 }
 

@@ -9,10 +9,10 @@
 
 namespace patina {
 
-/// Numbers in [0, 1) that fill their square evenly over the samples of a pixel. They are a pure function of the key, the
-/// pixel, the sample's index and how many were drawn before, so a picture is the same on any number of threads.
-/// Each draw is one two-dimensional Sobol' point, with the order of the samples shuffled and the digits scrambled on its
-/// own (Burley 2020, "Practical Hash-based Owen Scrambling", JCGT 9(4)); the seeds come from the keyed generator.
+/// Numbers in [0, 1) that fill their square evenly over the samples of a pixel. They are a pure function of the key,
+/// the pixel, the sample's index and how many were drawn before, so a picture is the same on any number of threads.
+/// Each draw is one two-dimensional Sobol' point, with the order of the samples shuffled and the digits scrambled on
+/// its own (Burley 2020, "Practical Hash-based Owen Scrambling", JCGT 9(4)); the seeds come from the keyed generator.
 class PixelSampler {
   public:
     PixelSampler(const KeyedRandom& random, int x, int y) : random_(&random), x_(x), y_(y) {}

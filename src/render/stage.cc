@@ -11,14 +11,14 @@ namespace {
 
 constexpr float pi = float(M_PI);
 // The floor fades into the backdrop between these distances from the object's middle, in radii.
-constexpr float fadeFrom = 1.6f;
-constexpr float fadeTo = 9.f;
+constexpr float fadeFrom = 1.3f;
+constexpr float fadeTo = 25.f;
 // The backdrop is darker than the lit floor: the object stands in a pool of light.
 constexpr float backdropShade = 0.42f;
 
 // Turns a shading normal just so far that a mirror ray along it does not go into the triangle (Keller et al. 2017, "The
-// Iray Light Transport Simulation and Rendering System", bends it likewise). Without it, silhouettes of coarse meshes go
-// black where the smooth normal looks away from the viewer.
+// Iray Light Transport Simulation and Rendering System", bends it likewise). Without it, silhouettes of coarse meshes
+// go black where the smooth normal looks away from the viewer.
 V3f bendTowards(const V3f& normal, const V3f& geometric, const V3f& wo) {
     const V3f mirrored = 2.f * (wo ^ normal) * normal - wo;
     const float least = std::min(0.9f * (wo ^ geometric), 0.02f);
@@ -32,7 +32,9 @@ V3f bendTowards(const V3f& normal, const V3f& geometric, const V3f& wo) {
 
 } // namespace
 
-V3f LambertBsdf::evaluate(const V3f&, const V3f& wi) const { return V3f(wi.z > 0.f ? albedo / pi : 0.f); }
+V3f LambertBsdf::evaluate(const V3f&, const V3f& wi) const {
+    return V3f(wi.z > 0.f ? albedo / pi : 0.f);
+}
 
 BsdfSample LambertBsdf::sample(const V3f&, const V3f& u) const {
     // Uniform on the disc below, lifted to the hemisphere (Malley): density cos / pi, weight the albedo.
@@ -41,7 +43,9 @@ BsdfSample LambertBsdf::sample(const V3f&, const V3f& u) const {
     return {{r * std::cos(phi), r * std::sin(phi), z}, z / pi, V3f(albedo)};
 }
 
-float LambertBsdf::pdf(const V3f&, const V3f& wi) const { return std::max(0.f, wi.z) / pi; }
+float LambertBsdf::pdf(const V3f&, const V3f& wi) const {
+    return std::max(0.f, wi.z) / pi;
+}
 
 Stage::Stage(const RenderScene& scene, const Lights& lights)
     : scene_(scene), rays_(scene.surface->positions, scene.surface->triangles), upright_(uprightFrame(scene.up)) {
@@ -103,8 +107,8 @@ void Stage::shadeSurface(const RayScene::Hit& hit, const V3f& direction, bool ba
     if ((normal ^ geometric) <= 0.f)
         normal = geometric;
 
-    // The triangle stands for a curved surface that bulges out over it. Starting shadow rays from the planes through the
-    // corners, weighted, instead of from the flat triangle takes the black facets off the terminator (Hanika 2021,
+    // The triangle stands for a curved surface that bulges out over it. Starting shadow rays from the planes through
+    // the corners, weighted, instead of from the flat triangle takes the black facets off the terminator (Hanika 2021,
     // "Hacking the Shadow Terminator", Ray Tracing Gems II, chapter 4).
     V3f lift(0.f);
     for (int i = 0; i < 3; ++i) {
@@ -119,8 +123,7 @@ void Stage::shadeSurface(const RayScene::Hit& hit, const V3f& direction, bool ba
 }
 
 bool Stage::facesFloor(const StagePoint& from, const V3f& direction) const {
-    return scene_.ground && (direction ^ upright_.normal) < -1e-7f &&
-           (from.origin ^ upright_.normal) > floorHeight_;
+    return scene_.ground && (direction ^ upright_.normal) < -1e-7f && (from.origin ^ upright_.normal) > floorHeight_;
 }
 
 bool Stage::blocked(const StagePoint& from, const V3f& direction) const {
@@ -131,9 +134,11 @@ bool Stage::blocked(const StagePoint& from, const V3f& direction) const {
 float Stage::backdropShare(const V3f& floorPoint) const {
     V3f aside = floorPoint - centre_;
     aside -= upright_.normal * (aside ^ upright_.normal);
-    const float t = std::clamp((aside.length() / radius_ - fadeFrom) / (fadeTo - fadeFrom), 0.f, 1.f);
-    // Quick at first and then ever slower: like light that spreads.
-    return 1.f - (1.f - t * t * (3.f - 2.f * t)) * (1.f - t);
+    // Even in one over the distance, which is how a picture shows a floor: a gradient without an edge up to the
+    // horizon.
+    const float nearness = radius_ / std::max(aside.length(), 1e-3f * radius_);
+    const float t = std::clamp((1.f / fadeFrom - nearness) / (1.f / fadeFrom - 1.f / fadeTo), 0.f, 1.f);
+    return t * t * (3.f - 2.f * t);
 }
 
 V3f Stage::seenByCamera(const Lights& lights, const V3f& direction) const {

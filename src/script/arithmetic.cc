@@ -75,10 +75,10 @@ std::optional<Expression> ExpressionChecker::binary(const SyntaxExpression& synt
     Expression out = node(Kind::binary, syntax);
     if (syntax.text == "+" || syntax.text == "-") {
         if (left->isLength != right->isLength) {
-            findings_.error(syntax.offset,
-                            fmt::format("a length and a plain number cannot be {}",
-                                        syntax.text == "+" ? "added" : "subtracted"),
-                            "give both a unit, or neither");
+            findings_.error(
+                syntax.offset,
+                fmt::format("a length and a plain number cannot be {}", syntax.text == "+" ? "added" : "subtracted"),
+                "give both a unit, or neither");
             return std::nullopt;
         }
         out.isLength = left->isLength;

@@ -19,7 +19,9 @@ namespace {
 /// What `repeat` may unroll to; more is a slip of the keyboard.
 constexpr std::size_t mostStatements = 100000;
 
-std::set<std::string> asSet(const std::vector<std::string>& words) { return {words.begin(), words.end()}; }
+std::set<std::string> asSet(const std::vector<std::string>& words) {
+    return {words.begin(), words.end()};
+}
 
 class Checker {
   public:
@@ -50,6 +52,7 @@ class Checker {
   private:
     void block(const std::vector<SyntaxStatement>& statements) {
         for (const SyntaxStatement& statement : statements) {
+            full_ = full_ || findings_.errorCount() > static_cast<int>(mostFindings);
             if (full_)
                 return;
             if (++visited_ > 2 * mostStatements) {
@@ -76,8 +79,7 @@ class Checker {
     void operation(const SyntaxStatement& syntax) {
         const bool begins = syntax.word == "new" || syntax.word == "open";
         if (begins && begun_) {
-            findings_.error(syntax.offset,
-                            fmt::format("'{}' begins the object a second time", syntax.word),
+            findings_.error(syntax.offset, fmt::format("'{}' begins the object a second time", syntax.word),
                             fmt::format("it began in line {}", tree_.source.lineNumber(*begun_)));
             return;
         }
@@ -110,6 +112,7 @@ class Checker {
             vocabulary::contains(vocabulary::growthModels(), name.text)) {
             findings_.error(name.offset, fmt::format("'{}' is a word of the language", name.text),
                             "choose another name");
+            scope_.brokenNames.insert(name.text);
             return false;
         }
         if (const Declaration* before = scope_.find(name.text)) {
@@ -139,7 +142,8 @@ class Checker {
     bool outsideRepeat(const SyntaxStatement& syntax) {
         if (scope_.steps.empty())
             return true;
-        findings_.error(syntax.offset, fmt::format("'{}' cannot be repeated", syntax.word), "it belongs before the 'repeat'");
+        findings_.error(syntax.offset, fmt::format("'{}' cannot be repeated", syntax.word),
+                        "it belongs before the 'repeat'");
         return false;
     }
 
@@ -223,8 +227,9 @@ class Checker {
             return false;
         }
         if (!curve.points.empty() && *year <= curve.points.back().first) {
-            findings_.error(point.offset, fmt::format("the curve '{}' is not sorted: year {:g} stands behind year {:g}",
-                                                      curve.name, *year, curve.points.back().first),
+            findings_.error(point.offset,
+                            fmt::format("the curve '{}' is not sorted: year {:g} stands behind year {:g}", curve.name,
+                                        *year, curve.points.back().first),
                             "the years of a curve's points must increase");
             return false;
         }
@@ -301,7 +306,9 @@ class Checker {
 
 } // namespace
 
-std::set<std::string> CheckContext::allOperators() { return asSet(vocabulary::operatorWords()); }
+std::set<std::string> CheckContext::allOperators() {
+    return asSet(vocabulary::operatorWords());
+}
 
 std::set<std::string> CheckContext::allFunctions() {
     std::set<std::string> all = asSet(vocabulary::functionNames());
@@ -309,7 +316,9 @@ std::set<std::string> CheckContext::allFunctions() {
     return all;
 }
 
-std::set<std::string> CheckContext::allGrowthModels() { return asSet(vocabulary::growthModels()); }
+std::set<std::string> CheckContext::allGrowthModels() {
+    return asSet(vocabulary::growthModels());
+}
 
 std::set<std::string> CheckContext::allGrowthArguments() {
     std::set<std::string> all;
@@ -319,9 +328,13 @@ std::set<std::string> CheckContext::allGrowthArguments() {
     return all;
 }
 
-std::set<std::string> CheckContext::allClauses() { return asSet(vocabulary::optionalClauses()); }
+std::set<std::string> CheckContext::allClauses() {
+    return asSet(vocabulary::optionalClauses());
+}
 
-Program check(const SyntaxTree& tree, const CheckContext& context) { return Checker(tree, context).run(); }
+Program check(const SyntaxTree& tree, const CheckContext& context) {
+    return Checker(tree, context).run();
+}
 
 Program readProgram(const std::string& text, const std::string& file, const CheckContext& context) {
     return check(parse(text, file), context);

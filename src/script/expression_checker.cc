@@ -1,7 +1,6 @@
 #include "script/expression_checker.h"
 
 #include "base/names.h"
-#include "base/units.h"
 #include "script/vocabulary.h"
 
 #include <fmt/format.h>
@@ -19,7 +18,20 @@ namespace {
 /// `let`s that use each other twice double at every step; no map a person writes comes near this.
 constexpr int mostResolvedNodes = 10000;
 
-bool isConstant(const Expression& expression) { return expression.kind == Kind::number; }
+bool isConstant(const Expression& expression) {
+    return expression.kind == Kind::number;
+}
+
+class Nesting {
+  public:
+    explicit Nesting(int& depth) : depth_(depth) { ++depth_; }
+    ~Nesting() { --depth_; }
+    Nesting(const Nesting&) = delete;
+    Nesting& operator=(const Nesting&) = delete;
+
+  private:
+    int& depth_;
+};
 
 } // namespace
 
@@ -39,7 +51,6 @@ Expression ExpressionChecker::node(Kind kind, const SyntaxExpression& syntax) co
 }
 
 std::optional<Expression> ExpressionChecker::resolve(const SyntaxExpression& syntax) {
-    nodes_ = 0;
     return resolveNode(syntax);
 }
 
@@ -53,11 +64,15 @@ std::optional<Expression> ExpressionChecker::map(const SyntaxExpression& syntax)
         return std::nullopt;
     }
     if (isConstant(*out) && (out->number < 0.0 || out->number > 1.0))
-        findings_.warning(syntax.offset, fmt::format("the factor {:g} is beyond 0 to 1 and will be clamped", out->number));
+        findings_.warning(syntax.offset,
+                          fmt::format("the factor {:g} is beyond 0 to 1 and will be clamped", out->number));
     return out;
 }
 
 std::optional<Expression> ExpressionChecker::resolveNode(const SyntaxExpression& syntax) {
+    const Nesting nesting(depth_);
+    if (depth_ == 1)
+        nodes_ = 0; // a whole expression begins
     if (++nodes_ > mostResolvedNodes) {
         findings_.error(syntax.offset, "the expression is too large once its 'let's are put in");
         return std::nullopt;
@@ -140,7 +155,8 @@ std::optional<Expression> ExpressionChecker::name(const SyntaxExpression& syntax
         return std::nullopt;
     }
     if (vocabulary::contains(vocabulary::growthModels(), syntax.text)) {
-        findings_.error(syntax.offset, fmt::format("the growth model '{}' needs a rate, a step and a total", syntax.text),
+        findings_.error(syntax.offset,
+                        fmt::format("the growth model '{}' needs a rate, a step and a total", syntax.text),
                         fmt::format("texture({}.linear_1.20)", syntax.text));
         return std::nullopt;
     }
@@ -193,8 +209,9 @@ std::optional<Expression> ExpressionChecker::call(const SyntaxExpression& syntax
             return std::nullopt;
         if (found->kind == Declaration::Kind::curve)
             return curveCall(syntax, *found);
-        findings_.error(syntax.offset, fmt::format("'{}' is not a function", syntax.text),
-                        fmt::format("leave a blank before the '(' where a map follows, or write {} * (…)", syntax.text));
+        findings_.error(
+            syntax.offset, fmt::format("'{}' is not a function", syntax.text),
+            fmt::format("leave a blank before the '(' where a map follows, or write {} * (…)", syntax.text));
         return std::nullopt;
     }
     const vocabulary::Signature* function = vocabulary::signature(syntax.text);
@@ -311,11 +328,15 @@ std::optional<Expression> ExpressionChecker::texture(const SyntaxExpression& syn
     out.children.back().text = *path;
     if (syntax.children.size() > 1) {
         const SyntaxExpression& channel = syntax.children[1];
-        if (channel.kind != SyntaxKind::name && channel.kind != SyntaxKind::string) {
-            findings_.error(channel.offset, "the second argument of texture is the name of a channel, such as R");
-            return std::nullopt;
+        if (channel.kind == SyntaxKind::name || channel.kind == SyntaxKind::string) {
+            out.children.push_back(node(Kind::name, channel));
+            return out;
         }
-        out.children.push_back(node(Kind::name, channel));
+        const auto number = wholeNumber(channel, "the channel (a name such as R, or a number from 0)", 0, 1000);
+        if (!number)
+            return std::nullopt;
+        out.children.push_back(node(Kind::number, channel));
+        out.children.back().number = *number;
     }
     return out;
 }
@@ -332,7 +353,8 @@ std::optional<Expression> ExpressionChecker::vertices(const SyntaxExpression& sy
             remedy = context_.vertexAttributes->empty()
                          ? "the model has no per-vertex attributes"
                          : fmt::format("the model has {}", vocabulary::listed(*context_.vertexAttributes));
-        findings_.error(attribute.offset, fmt::format("the model has no vertex attribute '{}'", attribute.text), remedy);
+        findings_.error(attribute.offset, fmt::format("the model has no vertex attribute '{}'", attribute.text),
+                        remedy);
         return std::nullopt;
     }
     Expression out = node(Kind::call, syntax);
@@ -373,76 +395,6 @@ std::optional<Expression> ExpressionChecker::geometric(const SyntaxExpression& s
     if (!whole)
         return std::nullopt;
     return out;
-}
-
-std::optional<Expression> ExpressionChecker::constant(const SyntaxExpression& syntax, const std::string& what) {
-    std::optional<Expression> out = resolveNode(syntax);
-    if (out && !isConstant(*out)) {
-        findings_.error(syntax.offset, fmt::format("{} must be a number, this varies over the surface", what),
-                        "a map stands behind the number, without an operator between them");
-        return std::nullopt;
-    }
-    return out;
-}
-
-std::optional<double> ExpressionChecker::length(const SyntaxExpression& syntax, const std::string& what) {
-    const std::optional<Expression> value = constant(syntax, what);
-    return value ? std::optional<double>(value->number) : std::nullopt;
-}
-
-std::optional<double> ExpressionChecker::lengthNotNegative(const SyntaxExpression& syntax, const std::string& what) {
-    const std::optional<double> value = length(syntax, what);
-    if (value && *value < 0.0) {
-        findings_.error(syntax.offset, fmt::format("{} is negative: {}", what, readableLength(*value)));
-        return std::nullopt;
-    }
-    return value;
-}
-
-std::optional<double> ExpressionChecker::lengthPositive(const SyntaxExpression& syntax, const std::string& what) {
-    const std::optional<double> value = lengthNotNegative(syntax, what);
-    if (value && *value == 0.0) {
-        findings_.error(syntax.offset, fmt::format("{} must be larger than 0", what));
-        return std::nullopt;
-    }
-    return value;
-}
-
-std::optional<double> ExpressionChecker::plainNumber(const SyntaxExpression& syntax, const std::string& what) {
-    const std::optional<Expression> value = constant(syntax, what);
-    if (!value)
-        return std::nullopt;
-    if (value->isLength) {
-        findings_.error(syntax.offset, fmt::format("{} is a number without a unit, this is a length", what));
-        return std::nullopt;
-    }
-    return value->number;
-}
-
-std::optional<double> ExpressionChecker::fraction(const SyntaxExpression& syntax, const std::string& what) {
-    const std::optional<double> value = plainNumber(syntax, what);
-    if (value && (*value < 0.0 || *value > 1.0)) {
-        findings_.error(syntax.offset, fmt::format("{} must be between 0 and 1, this is {:g}", what, *value));
-        return std::nullopt;
-    }
-    return value;
-}
-
-std::optional<double> ExpressionChecker::wholeNumber(const SyntaxExpression& syntax, const std::string& what,
-                                                     double fewest, double most) {
-    const std::optional<double> value = plainNumber(syntax, what);
-    if (!value)
-        return std::nullopt;
-    if (*value != std::floor(*value)) {
-        findings_.error(syntax.offset, fmt::format("{} must be a whole number, this is {:g}", what, *value));
-        return std::nullopt;
-    }
-    if (*value < fewest || *value > most) {
-        findings_.error(syntax.offset,
-                        fmt::format("{} must be {} to {:.0f}, this is {:.0f}", what, fewest, most, *value));
-        return std::nullopt;
-    }
-    return value;
 }
 
 } // namespace patina

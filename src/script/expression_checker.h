@@ -63,7 +63,8 @@ class ExpressionChecker {
     const CheckContext& context_;
     Findings& findings_;
     Scope& scope_;
-    int nodes_ = 0;
+    int nodes_ = 0; ///< of the whole expression that is being resolved, `let`s put in
+    int depth_ = 0; ///< of resolveNode's recursion
 };
 
 /// texture(BD.linear_1.20) and texture(BD(rate=linear, step=1, total=20, …)).

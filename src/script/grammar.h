@@ -1,5 +1,5 @@
 #pragma once
-// One statement's text becomes its syntax. The grammar itself (PEGTL) is in grammar.cc.
+// One statement's text becomes its syntax. The grammar itself (PEGTL) is in grammar_rules.h.
 
 #include "script/syntax.h"
 

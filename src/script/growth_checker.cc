@@ -69,7 +69,8 @@ std::optional<GrowthCall> GrowthChecker::resolve(const SyntaxExpression& syntax)
         findings.error(syntax.offset, fmt::format("unknown growth model '{}'", syntax.text), remedy);
         good = false;
     } else if (expressions_.context_.models.count(syntax.text) == 0) {
-        findings.error(syntax.offset, fmt::format("the growth model '{}' is not there yet in this version", syntax.text));
+        findings.error(syntax.offset,
+                       fmt::format("the growth model '{}' is not there yet in this version", syntax.text));
         good = false;
     }
     if (syntax.kind == SyntaxKind::growthShort) {
@@ -96,7 +97,8 @@ std::optional<GrowthCall> GrowthChecker::resolve(const SyntaxExpression& syntax)
     }
     for (const char* needed : {"rate", "step", "total"}) {
         if (given.count(needed) == 0) {
-            findings.error(syntax.offset, fmt::format("the growth model '{}' needs the argument '{}'", syntax.text, needed),
+            findings.error(syntax.offset,
+                           fmt::format("the growth model '{}' needs the argument '{}'", syntax.text, needed),
                            fmt::format("{}(rate=linear, step=1, total=20)", syntax.text));
             good = false;
         }
@@ -121,7 +123,8 @@ bool GrowthChecker::argument(const SyntaxExpression& syntax, std::size_t index, 
     }
     const std::vector<std::string> fitting = vocabulary::growthArguments(syntax.text);
     if (!fitting.empty() && !vocabulary::contains(fitting, name.text)) {
-        findings.error(name.offset, fmt::format("the growth model '{}' does not use the argument '{}'", syntax.text, name.text),
+        findings.error(name.offset,
+                       fmt::format("the growth model '{}' does not use the argument '{}'", syntax.text, name.text),
                        fmt::format("it uses {}", vocabulary::listed(fitting)));
         return false;
     }
@@ -165,7 +168,8 @@ bool GrowthChecker::argument(const SyntaxExpression& syntax, std::size_t index, 
     if (!map)
         return false;
     if (map->isLength) {
-        findings.error(value.offset, fmt::format("'{}' is a number or a map without a unit, this is a length", name.text));
+        findings.error(value.offset,
+                       fmt::format("'{}' is a number or a map without a unit, this is a length", name.text));
         return false;
     }
     if (map->kind == Expression::Kind::number && (map->number < 0.0 || map->number > 1.0)) {

@@ -70,8 +70,9 @@ class Run {
         voxelizeOptions.metal = action.metal;
         voxelizeOptions.exteriorBand = std::max(4.0, std::ceil(thickestStackVoxels(program_, options_.scale)) + 3.0);
         volume_ = std::make_unique<LayerVolume>(voxelize(closed, voxelizeOptions, progress_));
-        result_.voxelizeSeconds += secondsSince(start);
         bind(closed);
+        binding_->refineBase(*volume_);
+        result_.voxelizeSeconds += secondsSince(start);
     }
 
     void perform(const OpenFile& action, StatementReport&) {

@@ -17,6 +17,7 @@ namespace {
 constexpr std::size_t deepestBlocks = 16;
 /// A person's script is some kilobytes; a file this large is another file.
 constexpr std::size_t largestScript = std::size_t{4} << 20;
+constexpr std::size_t longestStatement = std::size_t{1} << 16;
 
 class Parser {
   public:
@@ -61,12 +62,13 @@ class Parser {
                 if (depth + 1 > deepestBlocks) {
                     error(piece.begin, fmt::format("blocks are nested more than {} deep", deepestBlocks));
                     next_ = split_.pieces.size();
+                    abandoned_ = true;
                     return;
                 }
                 std::vector<SyntaxStatement> body;
                 const std::size_t opened = piece.begin;
                 block(body, depth + 1);
-                if (!closed_ && tree_.diagnostics.size() <= mostFindings)
+                if (!closed_ && !abandoned_ && tree_.diagnostics.size() <= mostFindings)
                     error(opened, "'{' is not closed", "put a '}' at the end of the block");
                 closed_ = false;
                 if (repeatWaits)
@@ -89,6 +91,11 @@ class Parser {
 
     void statement(const StatementPiece& piece, std::vector<SyntaxStatement>& out, bool& repeatWaits) {
         if (piece.broken) {
+            remember(piece);
+            return;
+        }
+        if (piece.end - piece.begin > longestStatement) {
+            error(piece.begin, "the statement is too long", "use 'let NAME = …' for parts of it");
             remember(piece);
             return;
         }
@@ -130,7 +137,8 @@ class Parser {
     SyntaxTree& tree_;
     StatementSplit split_;
     std::size_t next_ = 0;
-    bool closed_ = false;
+    bool closed_ = false;    ///< the block that was read last has its '}'
+    bool abandoned_ = false; ///< the rest of the text is not read
     bool repeatWasBroken_ = false;
 };
 

@@ -34,12 +34,11 @@ struct Curve {
 /// | ------ | ------------------------------- | ---------------------------------- |
 /// | number |                                 | `number`; µm where `isLength`      |
 /// | string | the file, relative names joined to the script's folder | only as first argument of texture |
-/// | name   | a field (`exposure`, `wetness`, `slope`, `elevation`); as an argument of texture or vertices a channel or attribute | |
-/// | call   | the function: `texture` (of a file), `vertices`, `noise`, `turbulence`, `accessibility`, `facing`, `min`, `max`, `clamp`, `mix`, `pow`, `smoothstep` | its arguments, their number checked |
-/// | unary  | `-`                             | one                                |
-/// | binary | `+`, `-`, `*` or `/`            | two                                |
-/// | growth |                                 | `growth`: texture(BD.linear_1.20)  |
-/// | curve  | the curve's name                | `curve`, and one child: its argument |
+/// | name   | a field (`exposure`, `wetness`, `slope`, `elevation`); as an argument of texture or vertices a channel or
+/// attribute | | | call   | the function: `texture` (of a file), `vertices`, `noise`, `turbulence`, `accessibility`,
+/// `facing`, `min`, `max`, `clamp`, `mix`, `pow`, `smoothstep` | its arguments, their number checked | | unary  | `-`
+/// | one                                | | binary | `+`, `-`, `*` or `/`            | two | | growth | | `growth`:
+/// texture(BD.linear_1.20)  | | curve  | the curve's name                | `curve`, and one child: its argument |
 ///
 /// Every constant part has been folded into one number.
 struct Expression {
@@ -68,14 +67,14 @@ struct GrowthCall {
     std::string label;
 
     // What is not set was not given in the script.
-    std::optional<double> cellUm;               ///< size of a particle, > 0
-    std::optional<Expression> arrival;          ///< density of arriving particles (RD, RDR, BD)
-    std::optional<std::array<double, 3>> from;  ///< where particles come from, unit vector (RD, RDR, BD)
-    std::optional<double> reachUm;              ///< how far a particle relaxes (RDR), >= 0
-    std::optional<Expression> blocked;          ///< fraction of blocked cells (DPD, DPD_BS)
-    std::optional<int> patchCells;              ///< side of a seed patch in cells (DPD), >= 1
-    std::optional<double> seeding;              ///< chance of new seed patches (DPD), 0…1
-    std::optional<int> points;                  ///< number of sample points (ST), >= 1
+    std::optional<double> cellUm;              ///< size of a particle, > 0
+    std::optional<Expression> arrival;         ///< density of arriving particles (RD, RDR, BD)
+    std::optional<std::array<double, 3>> from; ///< where particles come from, unit vector (RD, RDR, BD)
+    std::optional<double> reachUm;             ///< how far a particle relaxes (RDR), >= 0
+    std::optional<Expression> blocked;         ///< fraction of blocked cells (DPD, DPD_BS)
+    std::optional<int> patchCells;             ///< side of a seed patch in cells (DPD), >= 1
+    std::optional<double> seeding;             ///< chance of new seed patches (DPD), 0…1
+    std::optional<int> points;                 ///< number of sample points (ST), >= 1
 };
 
 /// `new copper;`

@@ -17,10 +17,10 @@ struct Declaration {
     enum class Kind { parameter, map, curve };
     Kind kind = Kind::parameter;
     std::size_t offset = 0;
-    Expression value;                   ///< parameter: a number; map: resolved
-    int nodes = 1;                      ///< of the value
+    Expression value; ///< parameter: a number; map: resolved
+    int nodes = 1;    ///< of the value
     std::shared_ptr<const Curve> curve;
-    bool broken = false;                ///< its value has an error: uses are not reported again
+    bool broken = false; ///< its value has an error: uses are not reported again
     bool used = false;
 };
 
@@ -53,8 +53,8 @@ class Scope {
         return all;
     }
 
-    std::vector<int> steps;             ///< of the `repeat`s around the place, innermost last
-    std::set<std::string> brokenNames;  ///< would have been declared by statements with errors
+    std::vector<int> steps;            ///< of the `repeat`s around the place, innermost last
+    std::set<std::string> brokenNames; ///< would have been declared by statements with errors
 
   private:
     std::vector<std::map<std::string, Declaration>> levels_;

@@ -179,7 +179,8 @@ std::string StatementChecker::label(const SyntaxStatement& syntax) {
 
 void StatementChecker::warnWhereAbsent(const SyntaxWord& material) {
     if (presentKnown_ && present_.count(material.text) == 0)
-        findings_.warning(material.offset, fmt::format("there is no layer of '{}' yet: nothing happens", material.text));
+        findings_.warning(material.offset,
+                          fmt::format("there is no layer of '{}' yet: nothing happens", material.text));
 }
 
 std::optional<Statement::Action> StatementChecker::begin(const SyntaxStatement& syntax) {

@@ -46,9 +46,9 @@ class StatementChecker {
     const CheckContext& context_;
     Findings& findings_;
     ExpressionChecker expressions_;
-    std::map<std::string, int> used_;   ///< how often each unnamed label was given
-    std::set<std::string> present_;     ///< layers laid so far
-    bool presentKnown_ = true;          ///< false after `open`: the file's layers are not known here
+    std::map<std::string, int> used_; ///< how often each unnamed label was given
+    std::set<std::string> present_;   ///< layers laid so far
+    bool presentKnown_ = true;        ///< false after `open`: the file's layers are not known here
 };
 
 } // namespace patina

@@ -49,8 +49,8 @@ class Splitter {
             begin_ = ++at_;
         } else if (c == '{' || c == '}') {
             finish(at_);
-            split_.pieces.push_back({c == '{' ? StatementPiece::Kind::blockBegin : StatementPiece::Kind::blockEnd, at_,
-                                     at_ + 1, false});
+            split_.pieces.push_back(
+                {c == '{' ? StatementPiece::Kind::blockBegin : StatementPiece::Kind::blockEnd, at_, at_ + 1, false});
             begin_ = ++at_;
         } else if (c == '\n') {
             if (open_.empty() || statementBegins(at_ + 1)) {
@@ -107,7 +107,12 @@ class Splitter {
                vocabulary::contains(vocabulary::statementWords(), std::string_view(text_).substr(start, end - start));
     }
 
-    std::size_t lineEnd(std::size_t from) const { return std::min(text_.find('\n', from), text_.size()); }
+    /// Found once per line: a line can hold a million quotes.
+    std::size_t lineEnd(std::size_t from) {
+        if (from > lineEnd_ || lineEnd_ == 0)
+            lineEnd_ = std::min(text_.find('\n', from), text_.size());
+        return lineEnd_;
+    }
 
     void blankOut(std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
@@ -129,12 +134,15 @@ class Splitter {
     StatementSplit split_;
     std::size_t at_ = 0;
     std::size_t begin_ = 0;
+    std::size_t lineEnd_ = 0;
     std::vector<std::size_t> open_;
     bool broken_ = false;
 };
 
 } // namespace
 
-StatementSplit splitStatements(const SourceText& source) { return Splitter(source).run(); }
+StatementSplit splitStatements(const SourceText& source) {
+    return Splitter(source).run();
+}
 
 } // namespace patina

@@ -57,8 +57,8 @@ struct SyntaxStatement {
     std::string word; ///< "coat", …
     std::size_t offset = 0;
     std::string text;
-    std::vector<SyntaxWord> names;         ///< metals, materials, declared names, files, in order
-    std::vector<SyntaxExpression> values;  ///< thickness, height, value, count; curves: their points as tuples
+    std::vector<SyntaxWord> names;        ///< metals, materials, declared names, files, in order
+    std::vector<SyntaxExpression> values; ///< thickness, height, value, count; curves: their points as tuples
     std::optional<SyntaxExpression> map;
     bool area = false; ///< polish area
     std::vector<SyntaxClause> clauses;

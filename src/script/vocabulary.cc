@@ -7,9 +7,9 @@
 namespace patina::vocabulary {
 
 const std::vector<std::string>& statementWords() {
-    static const std::vector<std::string> words = {"new",   "open",  "coat",   "erode",  "grow", "convert",
-                                                   "fill",  "polish", "offset", "render", "let",  "param",
-                                                   "curve", "seed",  "repeat"};
+    static const std::vector<std::string> words = {"new",     "open",  "coat",   "erode",  "grow",
+                                                   "convert", "fill",  "polish", "offset", "render",
+                                                   "let",     "param", "curve",  "seed",   "repeat"};
     return words;
 }
 

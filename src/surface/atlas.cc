@@ -85,8 +85,7 @@ std::vector<V2d> fitPolygon(const std::vector<V3f>& positions, const int* corner
 } // namespace
 
 void makeFaceAtlas(Mesh& mesh, int resolution) {
-    const auto triangles =
-        static_cast<std::size_t>(std::count(mesh.faceSizes.begin(), mesh.faceSizes.end(), 3));
+    const auto triangles = static_cast<std::size_t>(std::count(mesh.faceSizes.begin(), mesh.faceSizes.end(), 3));
     const std::size_t others = mesh.faceSizes.size() - triangles;
     const Grid grid(others + (triangles + 1) / 2, resolution);
 

@@ -78,9 +78,9 @@ class ObjChecker {
     double number(std::string_view word, std::string_view what, long long which) const {
         double value;
         if (!readNumber(word, value))
-            fail(statementLine_, word.empty() ? fmt::format("{} {} has too few numbers", what, which)
-                                              : fmt::format("{} {} has '{}' where a number should be", what, which,
-                                                            word.substr(0, 40)),
+            fail(statementLine_,
+                 word.empty() ? fmt::format("{} {} has too few numbers", what, which)
+                              : fmt::format("{} {} has '{}' where a number should be", what, which, word.substr(0, 40)),
                  "export the model again");
         if (!std::isfinite(value) || std::abs(value) > largestCoordinate)
             fail(statementLine_,
@@ -171,9 +171,10 @@ class ObjChecker {
             for (int i = 0; i < face.size; ++i) {
                 const Corner& corner = corners_[face.start + i];
                 if (corner.vertex < 1 || corner.vertex > vertices_)
-                    fail(face.line,
-                         fmt::format("face {} names vertex {}, but there are {}", face.number, corner.number, vertices_),
-                         "export the model again");
+                    fail(
+                        face.line,
+                        fmt::format("face {} names vertex {}, but there are {}", face.number, corner.number, vertices_),
+                        "export the model again");
                 if (corner.uv > uvs_)
                     fail(face.line,
                          fmt::format("face {} names texture coordinate {}, but there are {}", face.number, corner.uv,
@@ -226,6 +227,8 @@ class ObjChecker {
 
 } // namespace
 
-CheckedFile checkedObj(std::string_view bytes, const std::string& place) { return ObjChecker(bytes, place).check(); }
+CheckedFile checkedObj(std::string_view bytes, const std::string& place) {
+    return ObjChecker(bytes, place).check();
+}
 
 } // namespace patina

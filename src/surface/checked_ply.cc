@@ -230,20 +230,20 @@ class PlyChecker {
 
     void checkNumber(bool vertex, const PlyElement& element, long long index, const PlyProperty& property,
                      double number) const {
-        if (std::isfinite(number) && std::abs(number) <= (vertex && isCoordinate(property)
-                                                              ? largestCoordinate
-                                                              : std::numeric_limits<float>::max()))
+        if (std::isfinite(number) &&
+            std::abs(number) <=
+                (vertex && isCoordinate(property) ? largestCoordinate : std::numeric_limits<float>::max()))
             return;
-        // Normals are computed anew, other elements are not used at all: in binary files whatever they hold is harmless.
+        // Normals are computed anew, other elements are not used at all: in binary files whatever they hold is
+        // harmless.
         const bool used = vertex && property.name != "nx" && property.name != "ny" && property.name != "nz";
         if (!used && header_.format != PlyHeader::Format::text)
             return;
         throw ModelError(place_,
-                         std::isnan(number)
-                             ? fmt::format("{} {} has a '{}' that is not a number (nan)", element.name, index,
-                                           property.name)
-                             : fmt::format("{} {} has a '{}' that is infinite or absurdly large", element.name, index,
-                                           property.name),
+                         std::isnan(number) ? fmt::format("{} {} has a '{}' that is not a number (nan)", element.name,
+                                                          index, property.name)
+                                            : fmt::format("{} {} has a '{}' that is infinite or absurdly large",
+                                                          element.name, index, property.name),
                          "repair the model where it was made");
     }
 
@@ -353,6 +353,8 @@ class PlyChecker {
 
 } // namespace
 
-CheckedFile checkedPly(std::string_view bytes, const std::string& place) { return PlyChecker(bytes, place).check(); }
+CheckedFile checkedPly(std::string_view bytes, const std::string& place) {
+    return PlyChecker(bytes, place).check();
+}
 
 } // namespace patina

@@ -42,10 +42,10 @@ bool looksBinary(std::string_view bytes) {
 CheckedFile checkedBinary(std::string_view bytes, const std::string& place) {
     const std::uint64_t count = littleEndian(bytes.data() + 80);
     if (bytes.size() < headerBytes + count * triangleBytes)
-        throw ModelError(place,
-                         fmt::format("the file ends after {} of {} triangles",
-                                     (bytes.size() - headerBytes) / triangleBytes, count),
-                         "it was cut short, or is not an STL file: copy or export it again");
+        throw ModelError(
+            place,
+            fmt::format("the file ends after {} of {} triangles", (bytes.size() - headerBytes) / triangleBytes, count),
+            "it was cut short, or is not an STL file: copy or export it again");
     CheckedFile out;
     out.binary = true;
     out.bytes.assign(bytes.substr(0, headerBytes + count * triangleBytes));
@@ -88,8 +88,8 @@ CheckedFile checkedText(std::string_view bytes, const std::string& place) {
                     broken("has a corner that is not three numbers");
                 checkCoordinate(value, static_cast<std::size_t>(out.faceCount) + 1, place);
             }
-            out.bytes += fmt::format("vertex {} {} {}\n", static_cast<float>(values[0]),
-                                     static_cast<float>(values[1]), static_cast<float>(values[2]));
+            out.bytes += fmt::format("vertex {} {} {}\n", static_cast<float>(values[0]), static_cast<float>(values[1]),
+                                     static_cast<float>(values[2]));
         } else if (word == "endloop" || word == "ENDLOOP") {
             if (corners != 3)
                 broken("does not have three corners");

@@ -15,8 +15,10 @@ namespace {
 constexpr float none = std::numeric_limits<float>::quiet_NaN();
 
 /// A custom property of one number per vertex, whatever its type, as floats.
-template <class... Types> struct NumbersOf;
-template <class Type, class... Rest> struct NumbersOf<Type, Rest...> {
+template <class... Types>
+struct NumbersOf;
+template <class Type, class... Rest>
+struct NumbersOf<Type, Rest...> {
     static bool read(const OpenMesh::BaseProperty& property, std::vector<float>& values) {
         const auto* typed = dynamic_cast<const OpenMesh::PropertyT<Type>*>(&property);
         if (!typed)
@@ -25,7 +27,8 @@ template <class Type, class... Rest> struct NumbersOf<Type, Rest...> {
         return true;
     }
 };
-template <> struct NumbersOf<> {
+template <>
+struct NumbersOf<> {
     static bool read(const OpenMesh::BaseProperty&, std::vector<float>&) { return false; }
 };
 
@@ -63,7 +66,9 @@ OpenMesh::VertexHandle FaceListImporter::add_vertex(const OpenMesh::Vec3f& posit
     return OpenMesh::VertexHandle(static_cast<int>(mesh_.positions.size()) - 1);
 }
 
-OpenMesh::VertexHandle FaceListImporter::add_vertex() { return add_vertex(OpenMesh::Vec3f(0.f)); }
+OpenMesh::VertexHandle FaceListImporter::add_vertex() {
+    return add_vertex(OpenMesh::Vec3f(0.f));
+}
 
 OpenMesh::FaceHandle FaceListImporter::add_face(const VHandles& corners) {
     faceStarts_.push_back(mesh_.faceVertices.size());
@@ -158,8 +163,9 @@ void FaceListImporter::takeCustomProperties() {
     const std::size_t vertices = mesh_.positions.size();
     for (auto it = properties_.vprops_begin(); it != properties_.vprops_end(); ++it) {
         std::vector<float> values;
-        if (*it && NumbersOf<float, double, signed char, unsigned char, short, unsigned short, int,
-                             unsigned int>::read(**it, values) &&
+        if (*it &&
+            NumbersOf<float, double, signed char, unsigned char, short, unsigned short, int, unsigned int>::read(
+                **it, values) &&
             values.size() == vertices)
             mesh_.vertexAttributes[(*it)->name()] = std::move(values);
     }

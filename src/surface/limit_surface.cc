@@ -33,7 +33,8 @@ constexpr double mostTriangles = 4e6;
 
 // --- numbers as OpenSubdiv wants to add them ---
 
-template <class Value> struct Weighted {
+template <class Value>
+struct Weighted {
     Value value;
     void Clear(void* = nullptr) { value = Value(0.f); }
     void AddWithWeight(const Weighted& other, float weight) { value += weight * other.value; }

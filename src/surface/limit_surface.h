@@ -14,13 +14,20 @@ enum class SubdivisionScheme {
 
 struct LimitSurfaceOptions {
     SubdivisionScheme scheme = SubdivisionScheme::automatic;
-    int level = -1;           ///< subdivisions; -1: until edges are about targetEdge, at most 7
-    double targetEdge = 0.0;  ///< scene units; used where level is -1
+    /// Subdivisions, 0…7; -1: 1…7, so many that 95 of 100 edges are no longer than targetEdge and the triangles no more
+    /// than four million.
+    int level = -1;
+    double targetEdge = 0.0; ///< scene units; used where level is -1; 0: 1/256 of the longest side
 };
 
-/// Vertices lie on the limit surface with limit normals; boundaries and corners are kept (edge and corner rule), UVs
-/// keep their corners and seams. Per-vertex attributes are carried along.
-/// \throws ModelError where the topology cannot be subdivided.
+/// Vertices lie on the limit surface with limit normals (cross product of the limit tangents); boundaries and corners
+/// are kept (edge and corner rule). UVs: linear along the borders of charts, which therefore stay where they are,
+/// smooth inside them (Blender's default, "boundaries" in USD). Per-vertex attributes are interpolated linearly and
+/// keep their range. `none` cuts polygons into triangles and gives angle-weighted normals. Quads are cut along the
+/// shorter diagonal. `closed`: every edge of the control mesh has two faces; without a scheme, vertices at one place
+/// count as one. With `automatic`, a mesh that cannot be subdivided is used as it is, and `note` says so. \throws
+/// ModelError where the topology cannot be subdivided by the scheme asked for; Loop on polygons; a level above 7;
+///         no faces.
 SurfaceMesh makeLimitSurface(const Mesh& mesh, const LimitSurfaceOptions& options);
 
 } // namespace patina

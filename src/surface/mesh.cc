@@ -19,9 +19,13 @@ Box3f boundsOf(const std::vector<V3f>& positions) {
 
 } // namespace
 
-Box3f Mesh::bounds() const { return boundsOf(positions); }
+Box3f Mesh::bounds() const {
+    return boundsOf(positions);
+}
 
-Box3f SurfaceMesh::bounds() const { return boundsOf(positions); }
+Box3f SurfaceMesh::bounds() const {
+    return boundsOf(positions);
+}
 
 double SurfaceMesh::area() const {
     double twice = 0.0;

@@ -13,7 +13,7 @@ namespace patina {
 /// Polygons of any size over shared vertices. Face f's corners are
 /// `faceVertices[faceStart(f) … + faceSizes[f])`; UVs, where there are any, have an index per corner.
 struct Mesh {
-    std::string name; ///< the file's stem or the shape's name; names the outputs
+    std::string name;                  ///< the file's stem or the shape's name; names the outputs
     std::vector<Imath::V3f> positions; ///< scene units
     std::vector<int> faceSizes;        ///< corners of each face, 3 or more
     std::vector<int> faceVertices;     ///< concatenated corners, counter-clockwise from outside
@@ -29,9 +29,9 @@ struct Mesh {
 /// The surface everything downstream sees (volume, bake, growth, pictures): the limit surface of a cage, or a scan
 /// as it is, in triangles fine enough to stand for it.
 struct SurfaceMesh {
-    std::vector<Imath::V3f> positions;  ///< on the limit surface, scene units
-    std::vector<Imath::V3f> normals;    ///< unit, per vertex: the limit normals; for scans angle-weighted
-    std::vector<Imath::V3i> triangles;  ///< counter-clockwise from outside
+    std::vector<Imath::V3f> positions; ///< on the limit surface, scene units
+    std::vector<Imath::V3f> normals;   ///< unit, per vertex: the limit normals; for scans angle-weighted
+    std::vector<Imath::V3i> triangles; ///< counter-clockwise from outside
     std::vector<Imath::V2f> uvs;
     std::vector<Imath::V3i> triangleUvs; ///< parallel to triangles, or empty
     std::vector<int> triangleFaces;      ///< the face of the control mesh each triangle came from

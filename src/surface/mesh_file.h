@@ -7,16 +7,25 @@
 
 namespace patina {
 
-/// Reads a mesh as a plain face list; UVs and per-vertex attributes where the format has them.
-/// Unreferenced vertices are dropped. Duplicate vertices of STL are merged.
-/// \throws ModelError (exit 4) naming the file and the offending vertex or face: an empty, truncated or foreign file, NaN or
-///         infinite coordinates, an index out of range, no faces, a zero-area model, a degenerate bounding box.
+/// Reads a mesh as a plain face list; its name is the file's stem. What no halfedge structure can hold (edges of three
+/// faces, faces twice) comes through unchanged. UVs are read from OBJ (per corner) and PLY (per vertex; the vertices
+/// that seams split there are joined again), and only kept if every corner has one. Vertex colours of OBJ and PLY
+/// become the attributes red, green, blue (0…1), every other number per vertex of PLY an attribute of its name; normals
+/// are not read. Strips of triangles (PLY) become triangles. Equal vertices of STL are merged, unreferenced vertices
+/// and repeated corners of a face dropped. Material files are not opened. Any thread may call it; the OpenMesh part
+/// runs one file at a time. \throws ModelError (exit 4) naming the file and the offending vertex or face: an empty,
+/// truncated or foreign file, NaN or
+///         infinite coordinates (or beyond 1e15), an index out of range, a face of more than 16384 corners, no faces, a
+///         zero-area model, a degenerate bounding box; a missing file, a folder, another format.
 Mesh readMesh(const std::filesystem::path& path);
 
-/// Writes control mesh and UVs as OBJ, atomically.
+/// Writes control mesh, UVs and vertex colours as OBJ, atomically; numbers read back to the same bits.
+/// \throws RunError where the file cannot be written; an older one is then still there.
 void writeObj(const Mesh& mesh, const std::filesystem::path& path);
 
-/// Writes triangles, normals, UVs (per vertex, split at seams) and vertex attributes as binary PLY, atomically.
+/// Writes triangles, normals, UVs (per vertex as s, t; split at seams) and vertex attributes as binary PLY, atomically.
+/// Red, green and blue, where all three are there, are written as bytes (0…1 → 0…255), everything else as float.
+/// \throws RunError where the file cannot be written.
 void writePly(const SurfaceMesh& surface, const std::filesystem::path& path);
 
 } // namespace patina

@@ -158,8 +158,8 @@ void writePly(const SurfaceMesh& surface, const std::filesystem::path& path) {
         bytes += fmt::format("property float {}\n", headerName(name));
         attributes.push_back(&values);
     }
-    bytes += fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-                         split.triangles.size());
+    bytes +=
+        fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n", split.triangles.size());
     bytes.reserve(bytes.size() + split.vertex.size() * (35 + 4 * attributes.size()) + 13 * split.triangles.size());
     for (std::size_t i = 0; i < split.vertex.size(); ++i) {
         const int vertex = split.vertex[i];

@@ -18,11 +18,10 @@ constexpr PlyType int8{"char", 1, false, true}, uint8{"uchar", 1, false, false},
     uint16{"ushort", 2, false, false}, int32{"int", 4, false, true}, uint32{"uint", 4, false, false},
     float32{"float", 4, true, true}, float64{"double", 8, true, true};
 
-constexpr TypeName typeNames[] = {
-    {"char", int8},     {"int8", int8},     {"uchar", uint8},    {"uint8", uint8},     {"short", int16},
-    {"int16", int16},   {"ushort", uint16}, {"uint16", uint16},  {"int", int32},       {"int32", int32},
-    {"uint", uint32},   {"uint32", uint32}, {"float", float32},  {"float32", float32}, {"double", float64},
-    {"float64", float64}};
+constexpr TypeName typeNames[] = {{"char", int8},     {"int8", int8},       {"uchar", uint8},    {"uint8", uint8},
+                                  {"short", int16},   {"int16", int16},     {"ushort", uint16},  {"uint16", uint16},
+                                  {"int", int32},     {"int32", int32},     {"uint", uint32},    {"uint32", uint32},
+                                  {"float", float32}, {"float32", float32}, {"double", float64}, {"float64", float64}};
 
 } // namespace
 

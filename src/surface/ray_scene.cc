@@ -95,8 +95,7 @@ bool visitTriangle(RTCPointQueryFunctionArguments* arguments) {
     auto& search = *static_cast<ClosestSearch*>(arguments->userPtr);
     const int index = static_cast<int>(arguments->primID);
     const Corners& corners = search.corners[index];
-    const TrianglePoint point =
-        closestOnTriangle(search.position, V3d(corners.a), V3d(corners.b), V3d(corners.c));
+    const TrianglePoint point = closestOnTriangle(search.position, V3d(corners.a), V3d(corners.b), V3d(corners.c));
     // Distances are compared as floats, so that neighbours which share the closest corner or edge tie exactly.
     const auto distance = static_cast<float>(std::sqrt(point.squaredDistance));
     if (!(distance <= search.radius))
@@ -109,8 +108,8 @@ bool visitTriangle(RTCPointQueryFunctionArguments* arguments) {
     search.point = point;
     // A little wider than the best, or nodes that hold a tie would be skipped. Embree measures in single precision, so
     // the slack also covers the size of the coordinates.
-    const float scale = static_cast<float>(std::abs(search.position.x) + std::abs(search.position.y) +
-                                           std::abs(search.position.z));
+    const float scale =
+        static_cast<float>(std::abs(search.position.x) + std::abs(search.position.y) + std::abs(search.position.z));
     const float radius = distance * (1.f + 1e-5f) + 1e-6f * scale;
     if (radius < arguments->query->radius) {
         arguments->query->radius = radius;
@@ -142,9 +141,10 @@ RayScene::RayScene(const std::vector<V3f>& positions, const std::vector<V3i>& tr
     const auto check = [this](const void* made) {
         if (made)
             return;
-        throw RunError("ray scene", rtcGetDeviceError(scene_->device) == RTC_ERROR_OUT_OF_MEMORY
-                                        ? "not enough memory for the rays' search tree"
-                                        : "Embree refused the model",
+        throw RunError("ray scene",
+                       rtcGetDeviceError(scene_->device) == RTC_ERROR_OUT_OF_MEMORY
+                           ? "not enough memory for the rays' search tree"
+                           : "Embree refused the model",
                        "a coarser model or fewer subdivisions need less memory");
     };
     scene_->device = rtcNewDevice(nullptr);

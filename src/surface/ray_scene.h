@@ -9,7 +9,9 @@
 
 namespace patina {
 
-/// Immutable after construction; every query is safe from any thread.
+/// Immutable after construction; every query is safe from any thread. Copies the mesh, and answers the same whatever
+/// the number of threads that built it: where triangles tie, the smallest index wins. \throws RunError on construction
+/// where memory does not suffice.
 class RayScene {
   public:
     RayScene(const std::vector<Imath::V3f>& positions, const std::vector<Imath::V3i>& triangles);
@@ -22,14 +24,18 @@ class RayScene {
         float distance;
         Imath::V3f geometricNormal; ///< not normalised, by the triangle's winding
     };
+    /// The first hit with nearest ≤ distance ≤ farthest, distances in lengths of `direction`. Watertight along edges.
     std::optional<Hit> intersect(const Imath::V3f& origin, const Imath::V3f& direction, float nearest = 0.f,
                                  float farthest = std::numeric_limits<float>::infinity()) const;
+    /// Whether anything is hit between nearest and farthest.
     bool occluded(const Imath::V3f& origin, const Imath::V3f& direction, float nearest, float farthest) const;
 
     struct Closest {
         SurfacePoint point;
         float distance;
     };
+    /// The closest point within the radius, degenerate triangles included; distance in scene units. Costs grow with the
+    /// distance from the surface over the size of its triangles: pass a radius where one is known.
     std::optional<Closest> closest(const Imath::V3f& position,
                                    float radius = std::numeric_limits<float>::infinity()) const;
 

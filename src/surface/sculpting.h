@@ -17,8 +17,12 @@ using Imath::V3d;
 /// Distance to the surface, negative inside; exact or a little too small.
 using Body = std::function<double(const V3d&)>;
 
-inline double mix(double a, double b, double t) { return a + (b - a) * t; }
-inline V3d mix(const V3d& a, const V3d& b, double t) { return a + (b - a) * t; }
+inline double mix(double a, double b, double t) {
+    return a + (b - a) * t;
+}
+inline V3d mix(const V3d& a, const V3d& b, double t) {
+    return a + (b - a) * t;
+}
 inline double smoothstep(double from, double to, double x) {
     const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
     return t * t * (3.0 - 2.0 * t);
@@ -35,9 +39,13 @@ inline double join(double a, double b, double k) {
     return std::min(a, b) - h * h * k * 0.25;
 }
 /// `a` without `b`, the edge rounded over about `k`.
-inline double carve(double a, double b, double k) { return -join(-a, b, k); }
+inline double carve(double a, double b, double k) {
+    return -join(-a, b, k);
+}
 
-inline double sphere(const V3d& p, const V3d& centre, double radius) { return (p - centre).length() - radius; }
+inline double sphere(const V3d& p, const V3d& centre, double radius) {
+    return (p - centre).length() - radius;
+}
 
 /// First-order distance; good near the surface.
 inline double ellipsoid(const V3d& p, const V3d& centre, const V3d& radii) {
@@ -59,13 +67,6 @@ inline double limb(const V3d& p, const V3d& a, const V3d& b, double ra, double r
     return (p - mix(a, b, t)).length() - mix(ra, rb, t);
 }
 
-inline double roundedBox(const V3d& p, const V3d& centre, const V3d& half, double radius) {
-    const V3d q(std::abs(p.x - centre.x) - half.x + radius, std::abs(p.y - centre.y) - half.y + radius,
-                std::abs(p.z - centre.z) - half.z + radius);
-    const V3d outside(std::max(q.x, 0.0), std::max(q.y, 0.0), std::max(q.z, 0.0));
-    return outside.length() + std::min(std::max({q.x, q.y, q.z}), 0.0) - radius;
-}
-
 /// A strand along a polyline, its radius given at each point.
 struct Strand {
     std::vector<V3d> points;
@@ -78,8 +79,13 @@ struct Strand {
     }
 };
 
-/// A row of cloth folds across `phase` (one fold per unit): round backs, sharp valleys, 0 in the valley to 1 on the back.
-inline double fold(double phase) { return std::abs(std::sin(M_PI * phase)); }
+/// A row of cloth folds across `phase` (one fold per unit): round backs and narrow valleys, 0 in the valley to 1 on the
+/// back.
+inline double fold(double phase) {
+    constexpr double valley = 0.28; // rounds the valley's bottom so that a few quads can hold it
+    const double s = std::sin(M_PI * phase);
+    return (std::sqrt(s * s + valley * valley) - valley) / (std::sqrt(1.0 + valley * valley) - valley);
+}
 
 /// The outermost point of the body on a ray from `origin`, or origin + direction * least where there is none
 /// farther out than that. `farthest` must lie outside.

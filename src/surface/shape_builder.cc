@@ -20,43 +20,57 @@ struct Placement {
     bool turned = false;
 };
 
-/// Places rectangles (largest side upright, tallest first) on shelves of a unit square less a gap around it; empty where they do not
-/// fit at this scale.
-std::vector<Placement> placeOnShelves(const std::vector<V2d>& sizes, double scale) {
+/// Places rectangles, largest side first, each where its top comes to lie lowest on the outline of those already there
+/// ("skyline"), upright or turned; empty where they do not fit into the unit square at this scale.
+std::vector<Placement> placeCharts(const std::vector<V2d>& sizes, double scale) {
     std::vector<std::size_t> order(sizes.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto height = [&](std::size_t i) { return std::max(sizes[i].x, sizes[i].y); };
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return height(a) > height(b); });
+    const auto longSide = [&](std::size_t i) { return std::max(sizes[i].x, sizes[i].y); };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return longSide(a) > longSide(b); });
 
-    struct Shelf {
-        double bottom, height, used;
+    struct Step {
+        double left, right, height;
     };
-    std::vector<Shelf> shelves;
+    std::vector<Step> skyline = {{chartGap, 1.0, chartGap}};
     std::vector<Placement> placements(sizes.size());
-    double top = chartGap;
     for (const std::size_t i : order) {
-        V2d size = sizes[i] * scale;
-        bool turned = size.x > size.y;
-        if (turned)
-            std::swap(size.x, size.y);
-        auto shelf = std::find_if(shelves.begin(), shelves.end(), [&](const Shelf& s) {
-            return size.y <= s.height && s.used + size.x + chartGap <= 1.0;
-        });
-        if (shelf == shelves.end()) {
-            // A long chart may open its shelf lying down, where that wastes less height.
-            const double upright = size.y;
-            if (upright > 0.45 && sizes.size() > 1) {
-                std::swap(size.x, size.y);
-                turned = !turned;
+        double bestTop = 2.0, bestLeft = 0.0, bestBase = 0.0;
+        bool bestTurned = false;
+        for (const bool turned : {false, true}) {
+            // Every chart brings the gap to its right and above along.
+            const double width = (turned ? sizes[i].y : sizes[i].x) * scale + chartGap;
+            const double height = (turned ? sizes[i].x : sizes[i].y) * scale + chartGap;
+            for (const Step& start : skyline) {
+                const double right = start.left + width;
+                if (right > 1.0)
+                    break;
+                double base = 0.0;
+                for (const Step& step : skyline)
+                    if (step.right > start.left && step.left < right)
+                        base = std::max(base, step.height);
+                if (base + height < bestTop) {
+                    bestTop = base + height;
+                    bestLeft = start.left;
+                    bestBase = base;
+                    bestTurned = turned;
+                }
             }
-            if (top + size.y + chartGap > 1.0 || size.x + 2 * chartGap > 1.0)
-                return {};
-            shelves.push_back({top, size.y, chartGap});
-            top += size.y + chartGap;
-            shelf = shelves.end() - 1;
         }
-        placements[i] = {V2d(shelf->used, shelf->bottom), turned};
-        shelf->used += size.x + chartGap;
+        if (bestTop > 1.0)
+            return {};
+        placements[i] = {V2d(bestLeft, bestBase), bestTurned};
+        const double right = bestLeft + (bestTurned ? sizes[i].y : sizes[i].x) * scale + chartGap;
+        std::vector<Step> raised;
+        for (const Step& step : skyline) {
+            if (step.left < bestLeft)
+                raised.push_back({step.left, std::min(step.right, bestLeft), step.height});
+            if (step.left <= bestLeft && bestLeft < step.right)
+                raised.push_back({bestLeft, right, bestTop});
+            if (step.right > right)
+                raised.push_back({std::max(step.left, right), step.right, step.height});
+        }
+        skyline = std::move(raised);
     }
     return placements;
 }
@@ -216,8 +230,8 @@ void ShapeBuilder::interpolateLimit(int rounds) {
                     edges[v] += (position(quad[(k + 1) % 4]) + position(quad[(k + 3) % 4])) * 0.5;
                     diagonals[v] += position(quad[(k + 2) % 4]);
                 }
-        // The limit mask of Catmull-Clark at a vertex of valence n: n² itself, 4 each edge, 1 each diagonal, over n (n + 5)
-        // (Halstead, Kass, DeRose 1993).
+        // The limit mask of Catmull-Clark at a vertex of valence n: n² itself, 4 each edge, 1 each diagonal, over n (n
+        // + 5) (Halstead, Kass, DeRose 1993).
         for (std::size_t v = 0; v < count; ++v) {
             const double n = valence[v];
             if (n < 3.0)
@@ -236,16 +250,15 @@ Mesh ShapeBuilder::finish() const {
     double area = 0.0;
     for (const V2d& size : sizes)
         area += size.x * size.y;
-    double low = 0.0;
-    double high = 1.0 / std::sqrt(area);
+    double fits = 0.0, tooLarge = 1.0 / std::sqrt(area);
     std::vector<Placement> placements;
     for (int step = 0; step < 40; ++step) {
-        const double scale = placements.empty() && step > 0 ? high * 0.5 : 0.5 * (low + high);
-        std::vector<Placement> trial = placeOnShelves(sizes, scale);
+        const double scale = 0.5 * (fits + tooLarge);
+        std::vector<Placement> trial = placeCharts(sizes, scale);
         if (trial.empty()) {
-            high = scale;
+            tooLarge = scale;
         } else {
-            low = scale;
+            fits = scale;
             placements = std::move(trial);
         }
     }
@@ -260,7 +273,7 @@ Mesh ShapeBuilder::finish() const {
         for (const V2d& uv : chart.uvs) {
             // A quarter turn keeps the chart from being mirrored.
             const V2d local = placements[i].turned ? V2d(chart.size.y - uv.y, uv.x) : uv;
-            mesh.uvs.emplace_back(V2f(placements[i].corner + local * low));
+            mesh.uvs.emplace_back(V2f(placements[i].corner + local * fits));
         }
         for (std::size_t q = 0; q < chart.quads.size(); ++q) {
             mesh.faceSizes.push_back(4);

@@ -25,19 +25,20 @@ struct VertexGrid {
 
 /// A "sock": a tube of quads around an axis, each end closed by a square patch of quads, so that there are no poles.
 /// The ring at the end of a tube is the border of the patch, mapped from the square to the disc by
-/// (a, b) -> (a sqrt(1 - b²/2), b sqrt(1 - a²/2)), which keeps the patch's quads from pinching anywhere but at its four corners.
+/// (a, b) -> (a sqrt(1 - b²/2), b sqrt(1 - a²/2)), which keeps the patch's quads from pinching anywhere but at its four
+/// corners.
 struct Sock {
     int across = 8; ///< quads of the end patches along x
     int along = 8;  ///< quads of the end patches along y
     int rows = 8;   ///< quads from the lower to the upper ring
 
-    /// Where the square's corners and sides fall on the ring, for columns not spread evenly: a in [-1, 1] to [-1, 1], increasing
-    /// and odd. Empty: the identity.
+    /// Where the square's corners and sides fall on the ring, for columns not spread evenly: a in [-1, 1] to [-1, 1],
+    /// increasing and odd. Empty: the identity.
     std::function<double(double)> spreadAcross;
     std::function<double(double)> spreadAlong;
 
-    /// Position of a side vertex: `ring` is the column's point on the unit circle (x to the right of the front, y to the back,
-    /// so that the front is (0, -1)), row from 0 (below) to rows.
+    /// Position of a side vertex: `ring` is the column's point on the unit circle (x to the right of the front, y to
+    /// the back, so that the front is (0, -1)), row from 0 (below) to rows.
     std::function<Imath::V3d(Imath::V2d ring, int column, int row)> side;
     /// Position of a patch vertex inside its border: `disc` is a point of the unit disc.
     std::function<Imath::V3d(Imath::V2d disc)> below;
@@ -48,8 +49,8 @@ struct Sock {
     double density = 1.0; ///< texels per length against other charts
 
     int columns() const { return 2 * (across + along); }
-    Imath::V2d disc(int a, int b) const;  ///< of the patch vertex (a, b)
-    Imath::V2d ring(int column) const;    ///< of the side's column, counter-clockwise from the front left corner
+    Imath::V2d disc(int a, int b) const; ///< of the patch vertex (a, b)
+    Imath::V2d ring(int column) const;   ///< of the side's column, counter-clockwise from the front left corner
 };
 
 class ShapeBuilder {
@@ -67,8 +68,8 @@ class ShapeBuilder {
 
     void addSock(const Sock& sock);
 
-    /// A box of quads: a sock with square ends, each side with a chart of its own. `position` takes a point of the surface of the
-    /// cube [-1, 1]³.
+    /// A box of quads: a sock with square ends, each side with a chart of its own. `position` takes a point of the
+    /// surface of the cube [-1, 1]³.
     void addBox(const std::array<int, 3>& quads, const std::function<Imath::V3d(const Imath::V3d&)>& position);
 
     /// Moves the vertices so that the Catmull-Clark limit surface passes (nearly, after few rounds) through where they

@@ -18,7 +18,8 @@ Mesh makeSheet(const char* name, double width, double depth, int columns, int ro
     VertexGrid grid(columns, rows);
     for (int r = 0; r <= rows; ++r)
         for (int c = 0; c <= columns; ++c)
-            grid.at(c, r) = builder.addVertex(V3d((double(c) / columns - 0.5) * width, (double(r) / rows - 0.5) * depth, 0));
+            grid.at(c, r) =
+                builder.addVertex(V3d((double(c) / columns - 0.5) * width, (double(r) / rows - 0.5) * depth, 0));
     builder.addGrid(grid);
     return builder.finish();
 }
@@ -31,9 +32,13 @@ struct Groove {
 
 } // namespace
 
-Mesh makePlate() { return makeSheet("plate", 0.1, 0.1, 40, 40); }
+Mesh makePlate() {
+    return makeSheet("plate", 0.1, 0.1, 40, 40);
+}
 
-Mesh makeStrip() { return makeSheet("strip", 0.3, 0.1, 90, 30); }
+Mesh makeStrip() {
+    return makeSheet("strip", 0.3, 0.1, 90, 30);
+}
 
 Mesh makeSphere() {
     constexpr double radius = 0.05;
@@ -52,8 +57,9 @@ Mesh makeGroove() {
     constexpr double width = 0.12, depth = 0.06, height = 0.02, grooveDepth = 0.01;
     constexpr double support = 0.00025; // loops this close to an edge keep it crisp when subdivided
     constexpr double pitch = 0.0018;
-    const std::vector<Groove> grooves = {{0.0005, false}, {0.001, false}, {0.002, false}, {0.004, false}, {0.008, false},
-                                         {0.016, false},  {0.002, true},  {0.004, true},  {0.008, true},  {0.016, true}};
+    const std::vector<Groove> grooves = {{0.0005, false}, {0.001, false}, {0.002, false}, {0.004, false},
+                                         {0.008, false},  {0.016, false}, {0.002, true},  {0.004, true},
+                                         {0.008, true},   {0.016, true}};
 
     // The block is its profile drawn out along y. A column of quads starts at a point of the profile and ends on
     // the bottom, straight below where it can: `foot` keeps columns that share a place (upright walls) apart.
@@ -125,10 +131,13 @@ Mesh makeGroove() {
     const std::array<int, 3> quads = {static_cast<int>(columns.size()) - 1, static_cast<int>(rows.size()) - 1,
                                       static_cast<int>(levels.size()) - 1};
     builder.addBox(quads, [&](const V3d& p) {
-        const auto index = [](double t, int count) { return static_cast<std::size_t>(std::lround((t + 1.0) / 2.0 * count)); };
+        const auto index = [](double t, int count) {
+            return static_cast<std::size_t>(std::lround((t + 1.0) / 2.0 * count));
+        };
         const Column& column = columns[index(p.x, quads[0])];
         const double t = levels[index(p.z, quads[2])];
-        return V3d(column.foot + (column.place - column.foot) * t, rows[index(p.y, quads[1])], (height - column.depth) * t);
+        return V3d(column.foot + (column.place - column.foot) * t, rows[index(p.y, quads[1])],
+                   (height - column.depth) * t);
     });
     return builder.finish();
 }

@@ -14,7 +14,9 @@ namespace {
 /// Beyond this clipping could take minutes on a comb-shaped polygon; a fan is good enough for what is left.
 constexpr int mostCornersToClip = 1024;
 
-double areaOf(const V2d& a, const V2d& b, const V2d& c) { return (b - a).cross(c - a); }
+double areaOf(const V2d& a, const V2d& b, const V2d& c) {
+    return (b - a).cross(c - a);
+}
 
 /// Seen along its normal the polygon is counter-clockwise; dropping the largest component of the normal keeps that
 /// without a square root.
@@ -126,8 +128,7 @@ V3d polygonAreaVector(const std::vector<V3f>& positions, const int* corners, int
     return sum;
 }
 
-void triangulatePolygon(const std::vector<V3f>& positions, const int* corners, int count,
-                        std::vector<V3i>& triangles) {
+void triangulatePolygon(const std::vector<V3f>& positions, const int* corners, int count, std::vector<V3i>& triangles) {
     if (count == 3) {
         triangles.emplace_back(0, 1, 2);
         return;

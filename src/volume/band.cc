@@ -4,9 +4,11 @@
 #include "volume/nest_grids.h"
 
 #include <openvdb/tools/FastSweeping.h>
-#include <tbb/parallel_reduce.h>
 #include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace patina {
@@ -28,6 +30,16 @@ bool ensureExteriorBand(LayerVolume& volume, double voxels) {
         grids.base->tree().topologyUnion(interface->tree());
     for (auto& interface : grids.interfaces)
         interface->tree().topologyUnion(grids.base->tree());
+    // Carried outward one by one, interfaces that touch may cross by a rounding error: nest them again.
+    const auto nest = grids.nest();
+    for (std::size_t k = 1; k < nest.size(); ++k) {
+        const auto below = leavesOf(nest[k - 1]->tree());
+        const auto here = leavesOf(grids.interfaces[k - 1]->tree());
+        tbb::parallel_for(std::size_t(0), here.size(), [&](std::size_t n) {
+            for (auto voxel = here[n]->beginValueOn(); voxel; ++voxel)
+                voxel.setValue(std::min(*voxel, below[n]->getValue(voxel.pos())));
+        });
+    }
     grids.material->tree().topologyUnion(grids.base->tree());
     for (auto& field : grids.fields)
         field.second->tree().topologyUnion(grids.base->tree());

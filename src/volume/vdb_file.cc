@@ -2,11 +2,15 @@
 
 #include "base/atomic_file.h"
 #include "base/errors.h"
+#include "base/hash.h"
 #include "volume/nest_grids.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <fstream>
 #include <sstream>
+#include <string_view>
 
 namespace patina {
 
@@ -64,6 +68,52 @@ typename Grid::Ptr requiredGrid(openvdb::GridPtrVec& grids, const std::string& n
     throw RunError(file, fmt::format("has no grid '{}'", name), "was this file written by vdb-patina run?");
 }
 
+// OpenVDB trusts the counts in a file, and a damaged one can make it loop or take all memory. So a seal stands behind the
+// file's last byte, where other readers do not look: eight letters and a hash of all that stands before.
+constexpr std::string_view sealWord = "PATINA01";
+constexpr std::size_t sealBytes = 16;
+
+std::uint64_t hashOfFile(std::istream& in, std::uint64_t bytes) {
+    ContentHash hash;
+    std::vector<char> buffer(1 << 20);
+    while (bytes > 0) {
+        const auto part = static_cast<std::streamsize>(std::min<std::uint64_t>(bytes, buffer.size()));
+        in.read(buffer.data(), part);
+        if (in.gcount() != part)
+            break;
+        hash.add(buffer.data(), static_cast<std::size_t>(part));
+        bytes -= static_cast<std::uint64_t>(part);
+    }
+    return hash.digest();
+}
+
+void seal(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    const std::uint64_t digest = hashOfFile(in, std::filesystem::file_size(file));
+    std::ofstream out(file, std::ios::binary | std::ios::app);
+    out.write(sealWord.data(), static_cast<std::streamsize>(sealWord.size()));
+    out.write(reinterpret_cast<const char*>(&digest), sizeof digest);
+    out.flush();
+    if (!in || !out)
+        throw RunError(file.string(), "cannot be written", "is the disk full?");
+}
+
+void checkSeal(const std::filesystem::path& file) {
+    const RunError damaged(file.string(), "is damaged, or was not written by vdb-patina",
+                           "only whole volumes, as `run` wrote them, can be opened");
+    const std::uint64_t size = std::filesystem::file_size(file);
+    if (size < sealBytes)
+        throw damaged;
+    std::ifstream in(file, std::ios::binary);
+    const std::uint64_t digest = hashOfFile(in, size - sealBytes);
+    std::string word(sealWord.size(), ' ');
+    std::uint64_t written = 0;
+    in.read(word.data(), static_cast<std::streamsize>(word.size()));
+    in.read(reinterpret_cast<char*>(&written), sizeof written);
+    if (!in || word != sealWord || written != digest)
+        throw damaged;
+}
+
 } // namespace
 
 void initializeVolumes() { openvdb::initialize(); }
@@ -111,6 +161,7 @@ void writeVolume(const LayerVolume& volume, const std::filesystem::path& path) {
     } catch (const openvdb::Exception& failure) {
         throw RunError(path.string(), fmt::format("cannot write the volume: {}", failure.what()), "is the disk full?");
     }
+    seal(file.temporary());
     file.commit();
 }
 
@@ -119,6 +170,7 @@ LayerVolume readVolume(const std::filesystem::path& path) {
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(path, ignored))
         throw RunError(file, "there is no such file");
+    checkSeal(path);
     openvdb::GridPtrVecPtr read;
     openvdb::MetaMap::Ptr meta;
     try {

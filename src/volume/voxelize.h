@@ -1,5 +1,6 @@
 #pragma once
-// From a surface to the base level set phi_0 (OpenVDB's mesh-to-volume) with a true distance in the whole band.
+// From a surface to the base level set phi_0 (OpenVDB's mesh-to-volume). Its distances are exact next to the surface;
+// SurfaceBinding::refineBase() makes them so in the whole band.
 
 #include "base/progress.h"
 #include "volume/layer_volume.h"

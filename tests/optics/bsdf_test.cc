@@ -61,7 +61,8 @@ Albedo albedo(const PatinaBsdf& bsdf, const V3f& wo, int samples, Uniforms& unif
     Albedo result;
     result.mean = V3f(mean);
     for (int c = 0; c < 3; ++c) {
-        result.error = std::max(result.error, std::sqrt(std::max(squares[c] / samples - mean[c] * mean[c], 0.0) / samples));
+        result.error =
+            std::max(result.error, std::sqrt(std::max(squares[c] / samples - mean[c] * mean[c], 0.0) / samples));
     }
     return result;
 }
@@ -227,9 +228,8 @@ TEST(PatinaBsdf, samplesFollowTheirDensity) {
             int freedom = 0;
             for (int row = 0; row < rows; ++row) {
                 for (int column = 0; column < columns; ++column) {
-                    const double expected =
-                        samples * patchProbability(bsdf, wo, row / 10.0, (row + 1) / 10.0, column * pi / 10.0,
-                                                   (column + 1) * pi / 10.0);
+                    const double expected = samples * patchProbability(bsdf, wo, row / 10.0, (row + 1) / 10.0,
+                                                                       column * pi / 10.0, (column + 1) * pi / 10.0);
                     const int count = counts[row * columns + column];
                     sum += expected;
                     if (expected < 5.0) {

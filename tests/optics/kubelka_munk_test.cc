@@ -94,8 +94,7 @@ TEST(KubelkaMunk, singlePrecisionIsWithinATenThousandthOfDouble) {
         const double s = uniforms.logBetween(1e-4, 1e2);
         const double d = uniforms.logBetween(1e-4, 1e2);
         const auto exact = kubelkaMunkLayer(k, s, d);
-        const auto single =
-            kubelkaMunkLayer(static_cast<float>(k), static_cast<float>(s), static_cast<float>(d));
+        const auto single = kubelkaMunkLayer(static_cast<float>(k), static_cast<float>(s), static_cast<float>(d));
         ASSERT_NEAR(exact.reflectance, single.reflectance, 1e-4);
         ASSERT_NEAR(exact.transmittance, single.transmittance, 1e-4);
     }
@@ -129,7 +128,9 @@ RandomLayer randomLayer(Uniforms& uniforms) {
     return {uniforms.logBetween(0.01, 10.0), uniforms.logBetween(0.01, 10.0), uniforms.logBetween(0.01, 1.0)};
 }
 
-StackLight<double> lightOf(const RandomLayer& layer) { return kubelkaMunkLayer(layer.k, layer.s, layer.d); }
+StackLight<double> lightOf(const RandomLayer& layer) {
+    return kubelkaMunkLayer(layer.k, layer.s, layer.d);
+}
 
 TEST(KubelkaMunk, splittingALayerChangesNothing) {
     Uniforms uniforms("split");
@@ -158,8 +159,8 @@ TEST(KubelkaMunk, stackingIsAssociativeAndEqualsTheFoldFromTheBaseUp) {
         for (const RandomLayer& layer : {c, b, a}) {
             folded = overBackground(kubelkaMunkLayer(layer.k, layer.s, layer.d), folded);
         }
-        const double merged =
-            left.reflectanceAbove + left.transmittance * left.transmittance * base / (1.0 - left.reflectanceBelow * base);
+        const double merged = left.reflectanceAbove +
+                              left.transmittance * left.transmittance * base / (1.0 - left.reflectanceBelow * base);
         ASSERT_NEAR(folded, merged, 1e-12);
     }
 }
@@ -173,16 +174,15 @@ TEST(KubelkaMunk, keepsFrontAndBackReflectanceApart) {
     const auto c = kubelkaMunkLayer(0.5, 1.0, d[2]);
     const double exact = overBackground(a, overBackground(b, overBackground(c, 0.6)));
     const auto merged = onTop(onTop(StackLight<double>(a), StackLight<double>(b)), StackLight<double>(c));
-    const double other = merged.reflectanceAbove + merged.transmittance * merged.transmittance * 0.6 /
-                                                       (1.0 - merged.reflectanceBelow * 0.6);
+    const double other = merged.reflectanceAbove +
+                         merged.transmittance * merged.transmittance * 0.6 / (1.0 - merged.reflectanceBelow * 0.6);
     EXPECT_NEAR(exact, other, 1e-14);
 }
 
 using Matrix2 = std::array<double, 4>;
 
 Matrix2 multiply(const Matrix2& a, const Matrix2& b) {
-    return {a[0] * b[0] + a[1] * b[2], a[0] * b[1] + a[1] * b[3], a[2] * b[0] + a[3] * b[2],
-            a[2] * b[1] + a[3] * b[3]};
+    return {a[0] * b[0] + a[1] * b[2], a[0] * b[1] + a[1] * b[3], a[2] * b[0] + a[3] * b[2], a[2] * b[1] + a[3] * b[3]};
 }
 
 /// exp(m), by halving until the Taylor series converges and squaring back.

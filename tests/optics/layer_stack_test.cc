@@ -1,6 +1,6 @@
-#include "optics/layer_stack.h"
 #include "base/errors.h"
-#include "optics/fresnel.h"
+#include "optics/layer_stack.h"
+#include "optics/stack_kernel.h"
 #include "optics_test_support.h"
 
 #include <gtest/gtest.h>
@@ -95,7 +95,8 @@ TEST(LayerStack, bandKernelIsKubelkaMunk) {
             for (std::size_t k = 1; k < stack.materials.size(); ++k) {
                 const Material& m = *stack.materials[k];
                 expected = overBackground(
-                    kubelkaMunkLayer<double>(m.absorption[band], m.scattering[band], stack.thicknessUm[k - 1]), expected);
+                    kubelkaMunkLayer<double>(m.absorption[band], m.scattering[band], stack.thicknessUm[k - 1]),
+                    expected);
             }
             ASSERT_NEAR(body[band], expected, 2e-5);
         }
@@ -194,6 +195,51 @@ TEST(LayerStack, refusesAStackWithoutABase) {
     EXPECT_THROW(StackOptics(std::vector<const Material*>{}), RunError);
     const std::vector<const Material*> many(StackOptics::maxLayers + 2, &shippedMaterials().at("copper"));
     EXPECT_THROW(StackOptics{many}, RunError);
+}
+
+// Machines differ in the width of their registers; results must not.
+TEST(StackKernel, everyRegisterWidthGivesTheSameBits) {
+    Uniforms uniforms("widths");
+    for (int i = 0; i < 500; ++i) {
+        const test::RandomStack stack = test::randomStack(uniforms);
+        std::vector<Spectrum> kappa(stack.materials.size()), extinction = kappa, halfOverKappa = kappa;
+        KernelInput input;
+        input.count = static_cast<int>(stack.thicknessUm.size());
+        input.base = &stack.materials[0]->reflectance;
+        input.rgbWeights = rec709BandWeights().data();
+        input.k1 = 0.04f;
+        input.k2 = 0.6f;
+        input.wantEdge = true;
+        for (int k = 0; k < input.count; ++k) {
+            const Material& material = *stack.materials[k + 1];
+            for (int band = 0; band < bandCount; ++band) {
+                const float absorption = material.absorption[band];
+                extinction[k][band] = absorption + material.scattering[band];
+                kappa[k][band] = std::sqrt(absorption * (extinction[k][band] + material.scattering[band]));
+                halfOverKappa[k][band] = kappa[k][band] > 0.f ? 0.5f / kappa[k][band] : 0.f;
+            }
+            input.layers[k] = {&material.scattering, &extinction[k],       &kappa[k],
+                               &halfOverKappa[k],    stack.thicknessUm[k], 0.01f};
+        }
+        KernelOutput narrow;
+        Spectrum narrowBody;
+        stackKernel(4).foldConserving(input, narrow);
+        stackKernel(4).foldBody(input, narrowBody);
+        for (int width : {8, 16}) {
+            KernelOutput wide;
+            Spectrum wideBody;
+            stackKernel(width).foldConserving(input, wide);
+            stackKernel(width).foldBody(input, wideBody);
+            ASSERT_EQ(narrowBody.values, wideBody.values);
+            for (int c = 0; c < 3; ++c) {
+                ASSERT_EQ(narrow.diffuse[c], wide.diffuse[c]);
+                ASSERT_EQ(narrow.edge[c], wide.edge[c]);
+                for (int k = 0; k <= input.count; ++k) {
+                    ASSERT_EQ(narrow.lobes[k][c], wide.lobes[k][c]);
+                }
+            }
+        }
+    }
 }
 
 } // namespace

@@ -1,5 +1,5 @@
-#include "optics/material_library.h"
 #include "base/errors.h"
+#include "optics/material_library.h"
 #include "optics_test_support.h"
 
 #include <gmock/gmock.h>
@@ -14,12 +14,47 @@ using test::shippedMaterials;
 using ::testing::HasSubstr;
 
 TEST(MaterialLibrary, shipsEveryMaterialOfThePaper) {
-    for (const char* name :
-         {"copper", "tarnish_1", "cuprite_2", "marine_patina_3", "marine_patina_4", "rural_patina_3", "rural_patina_4",
-          "cuprite_urban_2", "patina_urban_3", "patina_urban_4", "dirt", "cuprite", "tenorite", "copper_sulphide",
-          "posnjakite", "atacamite", "brochantite", "antlerite", "malachite", "organic_binder", "soot", "azurite",
-          "verdigris", "wax", "lacquer", "bronze", "brass", "iron", "steel", "zinc", "silver", "gold", "aluminium", "lead",
-          "goethite", "lepidocrocite", "hematite", "magnetite", "zinc_oxide", "zinc_carbonate", "silver_sulphide"}) {
+    for (const char* name : {"copper",
+                             "tarnish_1",
+                             "cuprite_2",
+                             "marine_patina_3",
+                             "marine_patina_4",
+                             "rural_patina_3",
+                             "rural_patina_4",
+                             "cuprite_urban_2",
+                             "patina_urban_3",
+                             "patina_urban_4",
+                             "dirt",
+                             "cuprite",
+                             "tenorite",
+                             "copper_sulphide",
+                             "posnjakite",
+                             "atacamite",
+                             "brochantite",
+                             "antlerite",
+                             "malachite",
+                             "organic_binder",
+                             "soot",
+                             "azurite",
+                             "verdigris",
+                             "wax",
+                             "lacquer",
+                             "bronze",
+                             "brass",
+                             "iron",
+                             "steel",
+                             "zinc",
+                             "silver",
+                             "gold",
+                             "aluminium",
+                             "lead",
+                             "goethite",
+                             "lepidocrocite",
+                             "hematite",
+                             "magnetite",
+                             "zinc_oxide",
+                             "zinc_carbonate",
+                             "silver_sulphide"}) {
         EXPECT_NE(shippedMaterials().find(name), nullptr) << name;
     }
     EXPECT_EQ(shippedMaterials().find("cuprit"), nullptr);
@@ -68,7 +103,8 @@ TEST(MaterialLibrary, mixturesFollowDuncansRule) {
     for (int i = 0; i < fineCount; ++i) {
         EXPECT_NEAR(tarnish.fineAbsorption[i], 0.85 * cuprite.fineAbsorption[i] + 0.15 * sulphide.fineAbsorption[i],
                     1e-9 * cuprite.fineAbsorption[i]);
-        EXPECT_NEAR(tarnish.fineScattering[i], 0.85 * cuprite.fineScattering[i] + 0.15 * sulphide.fineScattering[i], 1e-9);
+        EXPECT_NEAR(tarnish.fineScattering[i], 0.85 * cuprite.fineScattering[i] + 0.15 * sulphide.fineScattering[i],
+                    1e-9);
     }
 }
 
@@ -149,19 +185,22 @@ TEST_F(BrokenMaterials, spectrumOutOfOrder) {
 
 TEST_F(BrokenMaterials, spectrumWithAGap) {
     write("spectra/gap.csv", "# measured\nwavelength_nm,reflectance\n400,0.1\n420,0.1\n600,0.2\n700,0.2\n");
-    write("materials/green.toml", "source = \"test\"\n[reflectance]\nfile = \"spectra/gap.csv\"\n[scattering]\nhides_at_um = 3\n");
+    write("materials/green.toml",
+          "source = \"test\"\n[reflectance]\nfile = \"spectra/gap.csv\"\n[scattering]\nhides_at_um = 3\n");
     expectFinding("gap.csv", 5, 5, "a gap from 420 to 600 nm");
 }
 
 TEST_F(BrokenMaterials, spectrumOutOfOrderInItsFile) {
     write("spectra/order.csv", "wavelength_nm,reflectance\n400,0.1\n500,0.1\n450,0.2\n700,0.2\n");
-    write("materials/green.toml", "source = \"test\"\n[reflectance]\nfile = \"spectra/order.csv\"\n[scattering]\nhides_at_um = 3\n");
+    write("materials/green.toml",
+          "source = \"test\"\n[reflectance]\nfile = \"spectra/order.csv\"\n[scattering]\nhides_at_um = 3\n");
     expectFinding("order.csv", 4, 5, "wavelengths must rise, but 450 nm follows 500 nm");
 }
 
 TEST_F(BrokenMaterials, spectrumWithAWordForANumber) {
     write("spectra/word.csv", "wavelength_nm,reflectance\n400,0.1\n450, n/a\n");
-    write("materials/green.toml", "source = \"test\"\n[reflectance]\nfile = \"spectra/word.csv\"\n[scattering]\nhides_at_um = 3\n");
+    write("materials/green.toml",
+          "source = \"test\"\n[reflectance]\nfile = \"spectra/word.csv\"\n[scattering]\nhides_at_um = 3\n");
     expectFinding("word.csv", 3, 6, "expected a number, found 'n/a'");
 }
 
@@ -198,7 +237,8 @@ TEST_F(BrokenMaterials, unknownKey) {
 }
 
 TEST_F(BrokenMaterials, missingSpectrumFile) {
-    write("materials/green.toml", "source = \"test\"\n[reflectance]\nfile = \"spectra/nowhere.csv\"\n[scattering]\nhides_at_um = 3\n");
+    write("materials/green.toml",
+          "source = \"test\"\n[reflectance]\nfile = \"spectra/nowhere.csv\"\n[scattering]\nhides_at_um = 3\n");
     expectFinding("green.toml", 3, 8, "no such spectrum file 'spectra/nowhere.csv'");
 }
 

@@ -8,6 +8,8 @@
 #include "optics/material_library.h"
 #include "optics/spectrum_file.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <string>
@@ -16,13 +18,14 @@
 namespace patina::test {
 
 inline const MaterialLibrary& shippedMaterials() {
-    static const MaterialLibrary library =
-        MaterialLibrary::load(std::filesystem::path(PATINA_SOURCE_DIR) / "data");
+    static const MaterialLibrary library = MaterialLibrary::load(std::filesystem::path(PATINA_SOURCE_DIR) / "data");
     return library;
 }
 
 /// Measurements that may not be shipped; absent outside the project's workshop.
-inline std::filesystem::path sharedData() { return std::filesystem::path(PATINA_SOURCE_DIR) / "../shared/data"; }
+inline std::filesystem::path sharedData() {
+    return std::filesystem::path(PATINA_SOURCE_DIR) / "../shared/data";
+}
 
 /// Uniform numbers in a fixed order.
 class Uniforms {
@@ -75,8 +78,8 @@ inline FineSpectrum fineBody(const std::vector<const Material*>& materials, cons
     FineSpectrum result = materials[0]->fineReflectance;
     for (std::size_t k = 1; k < materials.size(); ++k) {
         for (int i = 0; i < fineCount; ++i) {
-            const auto layer = kubelkaMunkLayer<double>(materials[k]->fineAbsorption[i], materials[k]->fineScattering[i],
-                                                        thicknessUm[k - 1]);
+            const auto layer = kubelkaMunkLayer<double>(materials[k]->fineAbsorption[i],
+                                                        materials[k]->fineScattering[i], thicknessUm[k - 1]);
             result[i] = overBackground(layer, result[i]);
         }
     }
@@ -92,6 +95,8 @@ inline Imath::V3f total(const Appearance& appearance) {
     return sum;
 }
 
-inline Imath::V3d labOf(const Imath::V3f& rgb) { return labFromXyz(xyzFromLinearRec709(Imath::V3d(rgb))); }
+inline Imath::V3d labOf(const Imath::V3f& rgb) {
+    return labFromXyz(xyzFromLinearRec709(Imath::V3d(rgb)));
+}
 
 } // namespace patina::test

@@ -40,7 +40,8 @@ TEST(PatinaColours, cupriteFilmsGoOrangeChestnutDarkBrown) {
                  {0.8f, {14.4, 7.2, 17.1}}};
     const auto& library = shippedMaterials();
     for (const auto& film : films) {
-        EXPECT_LE(deltaE2000(bodyLab({&library.at("copper"), &library.at("cuprite")}, {film.thicknessUm}), film.lab), 0.5)
+        EXPECT_LE(deltaE2000(bodyLab({&library.at("copper"), &library.at("cuprite")}, {film.thicknessUm}), film.lab),
+                  0.5)
             << film.thicknessUm << " µm";
     }
 }
@@ -65,8 +66,7 @@ TEST(PatinaColours, antleriteOverCupriteTurnsGreenAsMeasuredPowdersSay) {
     } films[] = {
         {1.f, {50.3, -7.5, 1.3}}, {3.f, {64.1, -19.6, 1.7}}, {6.f, {69.2, -27.7, 3.3}}, {12.f, {70.9, -31.7, 4.7}}};
     for (const auto& film : films) {
-        const V3d lab =
-            bodyLab({&library.at("copper"), &library.at("cuprite"), &antlerite}, {1.f, film.thicknessUm});
+        const V3d lab = bodyLab({&library.at("copper"), &library.at("cuprite"), &antlerite}, {1.f, film.thicknessUm});
         EXPECT_LE(deltaE2000(lab, film.lab), 1.0) << film.thicknessUm << " µm";
     }
     // The shipped constants carry the interface apart; an opaque layer in air is the powder that was measured.
@@ -108,8 +108,8 @@ TEST(PatinaColours, coatingsOfThePapersScriptsReadBrownThenGreen) {
     }
 }
 
-// The mixtures were fixed from the minerals that the paper names, before this was measured. Thickness: ISO 9224, 30 years
-// in C3, 0.95 µm in the first year times 9.67 of metal, four times that as mineral, half of it washed away.
+// The mixtures were fixed from the minerals that the paper names, before this was measured. Thickness: ISO 9224, 30
+// years in C3, 0.95 µm in the first year times 9.67 of metal, four times that as mineral, half of it washed away.
 TEST(PatinaColours, aThirtyYearOldPatinaLooksLikeTheMeasuredRoof) {
     const auto file = test::sharedData() / "spectra/aster_v2/copper_roof_extremely_weathered.csv";
     if (!std::filesystem::exists(file)) {
@@ -117,11 +117,11 @@ TEST(PatinaColours, aThirtyYearOldPatinaLooksLikeTheMeasuredRoof) {
     }
     const V3d roof = labFromXyz(xyzFromReflectance(readSpectrumFile(file, "reflectance", {}).fine()));
     const float half = 0.5f * 0.5f * 0.95f * 9.67f * 4.f;
-    const V3d marine = test::labOf(
-        test::total(look({"copper", "tarnish_1", "cuprite_2", "marine_patina_3", "marine_patina_4"}, {0.35f, 1.2f, half, half})));
+    const V3d marine = test::labOf(test::total(
+        look({"copper", "tarnish_1", "cuprite_2", "marine_patina_3", "marine_patina_4"}, {0.35f, 1.2f, half, half})));
     EXPECT_LE(deltaE2000(marine, roof), 8.0) << marine;
-    const V3d urban = test::labOf(test::total(
-        look({"copper", "tarnish_1", "cuprite_urban_2", "patina_urban_3", "patina_urban_4"}, {0.55f, 1.f, half, half})));
+    const V3d urban = test::labOf(test::total(look(
+        {"copper", "tarnish_1", "cuprite_urban_2", "patina_urban_3", "patina_urban_4"}, {0.55f, 1.f, half, half})));
     RecordProperty("urban_delta_e", std::to_string(deltaE2000(urban, roof)));
     EXPECT_LE(deltaE2000(urban, roof), 10.0) << urban;
 }

@@ -54,8 +54,9 @@ TEST(Checker, tellsAllErrorsOfAScriptInOneGoInTheOrderOfTheText) {
 TEST(Checker, tellsMetalsFromLayers) {
     EXPECT_THAT(briefly(findingsOf("new soot")),
                 ElementsAre("1:5: 'soot' is a layer's material, a metal is needed here"));
-    EXPECT_EQ(firstError("coat bronze 1"), "2:6: 'bronze' is a metal, a layer's material is needed here (a metal begins "
-                                           "the script: new bronze)");
+    EXPECT_EQ(firstError("coat bronze 1"),
+              "2:6: 'bronze' is a metal, a layer's material is needed here (a metal begins "
+              "the script: new bronze)");
     EXPECT_EQ(firstError("convert copper to soot 1"), "2:9: 'copper' is a metal, a layer's material is needed here (a "
                                                       "metal begins the script: new copper)");
     EXPECT_NO_THROW(readScript("new bronze\ncoat soot 1\npolish area 0.1 of bronze"));
@@ -66,12 +67,11 @@ TEST(Checker, wantsABeginningAndOnlyOne) {
     EXPECT_THAT(briefly(findingsOf("# only a comment\n")), ElementsAre("0:0: the script begins nothing"));
     EXPECT_THAT(briefly(findingsOf("coat soot 1\nerode 2\n")),
                 ElementsAre("1:1: 'coat' comes before the object has begun"));
-    EXPECT_EQ(firstError("coat soot 1\nnew bronze"),
-              "3:1: 'new' begins the object a second time (it began in line 1)");
+    EXPECT_EQ(firstError("coat soot 1\nnew bronze"), "3:1: 'new' begins the object a second time (it began in line 1)");
     EXPECT_THAT(briefly(findingsOf("repeat 2 { new copper }")), testing::Contains("1:12: 'new' cannot be repeated"));
     // Declarations may stand before it.
-    EXPECT_NO_THROW(readScript("param t = 1; let m = noise(1mm); curve c = (0, 0) (1, 1); seed 3; new copper\n"
-                               "coat soot t * c(1) m"));
+    EXPECT_NO_THROW(readScript("param t = 1; let n = noise(1mm); curve c = (0, 0) (1, 1); seed 3; new copper\n"
+                               "coat soot t * c(1) n"));
 }
 
 TEST(Checker, knowsTheWordsOfGrowth) {
@@ -83,7 +83,8 @@ TEST(Checker, knowsTheWordsOfGrowth) {
               "2:24: unknown growth rate 'quadratic' (the rates are linear, parabolic, cubic and logarithmic)");
     EXPECT_EQ(firstError("coat soot 1 texture(BD(rate=cubik, step=1, total=20))"),
               "2:29: unknown growth rate 'cubik' (did you mean 'cubic'?)");
-    EXPECT_THAT(firstError("coat soot 1 texture(BD.linear_21.20)"), HasSubstr("2:31: step 21 is beyond the total of 20"));
+    EXPECT_THAT(firstError("coat soot 1 texture(BD.linear_21.20)"),
+                HasSubstr("2:31: step 21 is beyond the total of 20"));
     EXPECT_THAT(firstError("coat soot 1 texture(BD(rate=linear, total=20, step=21))"),
                 HasSubstr("2:52: step 21 is beyond the total of 20"));
     EXPECT_THAT(firstError("coat soot 1 texture(BD.linear_0.20)"), HasSubstr("2:31: the step must be at least 1"));
@@ -132,11 +133,13 @@ TEST(Checker, knowsKindsOfQuantity) {
                 HasSubstr("(a map stands behind the number, without an operator between them)"));
     EXPECT_THAT(firstError("polish area 2mm"), HasSubstr("2:13: the fraction of plateau is a number without a unit"));
     EXPECT_THAT(firstError("polish area 1.5"), HasSubstr("2:13: the fraction of plateau must be between 0 and 1"));
-    EXPECT_THAT(firstError("convert soot to dirt -0.1"), HasSubstr("the fraction must be between 0 and 1, this is -0.1"));
+    EXPECT_THAT(firstError("coat soot 1\nconvert soot to dirt -0.1"),
+                HasSubstr("the fraction must be between 0 and 1, this is -0.1"));
     EXPECT_THAT(firstError("coat soot 1 smoothstep(1, 2mm, noise(1))"),
                 HasSubstr("2:27: the arguments of 'smoothstep' must be all lengths or all plain numbers"));
     EXPECT_THAT(firstError("coat soot 1 accessibility(0)"), HasSubstr("2:27: the radius must be larger than 0"));
-    EXPECT_THAT(firstError("coat soot 1 turbulence(1mm, 2.5)"), HasSubstr("2:29: the number of octaves must be a whole"));
+    EXPECT_THAT(firstError("coat soot 1 turbulence(1mm, 2.5)"),
+                HasSubstr("2:29: the number of octaves must be a whole"));
     EXPECT_THAT(firstError("coat soot 1 facing(0, 0, 0)"), HasSubstr("2:13: the direction (0, 0, 0) faces nowhere"));
     EXPECT_THAT(firstError("offset wax 0"), HasSubstr("2:12: the radius must be larger than 0"));
     EXPECT_THAT(firstError("seed -1"), HasSubstr("2:6: the seed must be 0 to"));
@@ -167,11 +170,14 @@ TEST(Checker, knowsFunctionsFieldsAndTheirArguments) {
     EXPECT_THAT(firstError("coat soot 1 exposure(2)"), HasSubstr("2:13: 'exposure' has no arguments"));
     EXPECT_THAT(firstError("coat soot 1 \"a.png\""), HasSubstr("2:13: a quoted text can only be a texture's file"));
     EXPECT_THAT(firstError("coat soot 1 (1, 2)"), HasSubstr("2:13: a list has no place here"));
-    EXPECT_THAT(firstError("coat soot 1 texture(noise(1mm))"), HasSubstr("2:21: texture needs an image file in quotes"));
+    EXPECT_THAT(firstError("coat soot 1 texture(noise(1mm))"),
+                HasSubstr("2:21: texture needs an image file in quotes"));
     EXPECT_THAT(firstError("coat soot 1 texture(BD.linear_1.20, R)"),
                 HasSubstr("2:37: texture of a growth pattern has one argument"));
-    EXPECT_THAT(firstError("coat soot 1 noise(1mm) of full"), HasSubstr("2:24: 'of full' belongs behind a growth pattern"));
-    EXPECT_THAT(firstError("render pictures"), HasSubstr("2:8: unknown result 'pictures' (what can be rendered: maps)"));
+    EXPECT_THAT(firstError("coat soot 1 noise(1mm) of full"),
+                HasSubstr("2:24: 'of full' belongs behind a growth pattern"));
+    EXPECT_THAT(firstError("render pictures"),
+                HasSubstr("2:8: unknown result 'pictures' (what can be rendered: maps)"));
 }
 
 TEST(Checker, knowsWhichClausesBelongTogether) {
@@ -190,6 +196,9 @@ TEST(Checker, findsTexturesNextToTheScriptAndMissesThoseThatAreNotThere) {
     const Expression& map = *coatAt(program, 1).map;
     EXPECT_EQ(map.children.at(0).text, (folder / "maps/a.png").string());
     EXPECT_EQ(map.children.at(1).text, "G");
+
+    const Program numbered = readProgram("new copper\ncoat soot 1 texture(\"maps/a.png\", 2)", script, testContext());
+    EXPECT_DOUBLE_EQ(coatAt(numbered, 1).map->children.at(1).number, 2.0);
 
     CheckContext elsewhere = testContext();
     elsewhere.baseFolder = folder / "maps";
@@ -218,7 +227,8 @@ TEST(Checker, knowsTheModelsVertexAttributesWhereThereIsAModel) {
     EXPECT_EQ(firstError("coat soot 1 vertices(colour)", context),
               "2:22: the model has no vertex attribute 'colour' (the model has dirtiness and age)");
     context.vertexAttributes->clear();
-    EXPECT_THAT(firstError("coat soot 1 vertices(colour)", context), HasSubstr("(the model has no per-vertex attributes)"));
+    EXPECT_THAT(firstError("coat soot 1 vertices(colour)", context),
+                HasSubstr("(the model has no per-vertex attributes)"));
 }
 
 TEST(Checker, saysBeforeAnythingRunsWhatThisBuildCannotDo) {
@@ -237,7 +247,8 @@ TEST(Checker, saysBeforeAnythingRunsWhatThisBuildCannotDo) {
                                    "coat soot 1 texture(RD(rate=linear, step=1, total=2, from=(0, 0, 1)))\n"
                                    "erode 1 by hardness\n",
                                    context)),
-                ElementsAre("2:1: 'fill' is not there yet in this version", "3:13: 'wetness' is not there yet in this version",
+                ElementsAre("2:1: 'fill' is not there yet in this version",
+                            "3:13: 'wetness' is not there yet in this version",
                             "4:17: 'accessibility' is not there yet in this version",
                             "5:21: the growth model 'DPD_BS' is not there yet in this version",
                             "6:54: the argument 'from' is not there yet in this version",
@@ -251,10 +262,12 @@ TEST(Checker, givesEveryStatementItsLabel) {
             out.push_back(statement.label);
         return out;
     };
-    EXPECT_THAT(labels("new copper\ncoat soot 1\ncoat dirt 1\ncoat soot 1\ncoat soot 1 as late\ncoat soot 1\nerode 1\nerode 1"),
-                ElementsAre("new", "soot", "dirt", "soot#2", "late", "soot#4", "erode", "erode#2"));
+    EXPECT_THAT(
+        labels("new copper\ncoat soot 1\ncoat dirt 1\ncoat soot 1\ncoat soot 1 as late\ncoat soot 1\nerode 1\nerode 1"),
+        ElementsAre("new", "soot", "dirt", "soot#2", "late", "soot#4", "erode", "erode#2"));
     // A line in between changes nothing for the others.
-    EXPECT_THAT(labels("new copper\ncoat soot 1\ncoat wax 1\ncoat soot 1"), ElementsAre("new", "soot", "wax", "soot#2"));
+    EXPECT_THAT(labels("new copper\ncoat soot 1\ncoat wax 1\ncoat soot 1"),
+                ElementsAre("new", "soot", "wax", "soot#2"));
 }
 
 TEST(Checker, givesTwoPatternsOfOneStatementTwoKeys) {
@@ -280,9 +293,10 @@ TEST(Checker, putsParametersAndLetsIn) {
     EXPECT_DOUBLE_EQ(coatAt(program, 1).thicknessUm, 4.0);
     const Expression& map = *coatAt(program, 1).map;
     EXPECT_DOUBLE_EQ(map.children.at(0).children.at(0).children.at(0).number, 3000.0);
-    EXPECT_THAT(program.parameters, ElementsAre(AllOf(Field(&Parameter::name, "depth"), Field(&Parameter::value, 2.0),
-                                                      Field(&Parameter::wasSet, false)),
-                                                AllOf(Field(&Parameter::name, "size"), Field(&Parameter::isLength, true))));
+    EXPECT_THAT(program.parameters,
+                ElementsAre(AllOf(Field(&Parameter::name, "depth"), Field(&Parameter::value, 2.0),
+                                  Field(&Parameter::wasSet, false)),
+                            AllOf(Field(&Parameter::name, "size"), Field(&Parameter::isLength, true))));
 
     context.settings = {{"depth", "3um"}, {"size", " 1 cm "}};
     program = readScript(text, context);
@@ -308,7 +322,8 @@ TEST(Checker, refusesASettingThatNoParameterHas) {
 }
 
 TEST(Checker, declaresANameOnceAndBeforeItsUse) {
-    EXPECT_EQ(firstError("let a = 1\nparam a = 2\ncoat soot a"), "3:7: the name 'a' is taken (it was declared in line 2)");
+    EXPECT_EQ(firstError("let a = 1\nparam a = 2\ncoat soot a"),
+              "3:7: the name 'a' is taken (it was declared in line 2)");
     EXPECT_THAT(firstError("coat soot a\nlet a = 1"), HasSubstr("2:11: unknown name 'a'"));
     EXPECT_EQ(firstError("let noise = 1"), "2:5: 'noise' is a word of the language (choose another name)");
     EXPECT_EQ(firstError("let mm = 1"), "2:5: 'mm' is a word of the language (choose another name)");
@@ -356,7 +371,8 @@ TEST(Checker, drawsCurvesWithStraightLines) {
     EXPECT_THAT(firstError("curve c = (0, 0) (1, 1mm)"), HasSubstr("2:22: the values of a curve must be all lengths"));
     EXPECT_THAT(firstError("curve c = (0, 0) (1, noise(1))"), HasSubstr("2:22: a curve's value is a number"));
     EXPECT_EQ(firstError("curve c = (0, 0) (1, 1)\ncoat soot c"), "3:11: the curve 'c' needs a year (c(30))");
-    EXPECT_THAT(firstError("curve c = (0, 0) (1, 1)\ncoat soot c(1, 2)"), HasSubstr("3:11: the curve 'c' has one argument"));
+    EXPECT_THAT(firstError("curve c = (0, 0) (1, 1)\ncoat soot c(1, 2)"),
+                HasSubstr("3:11: the curve 'c' has one argument"));
 }
 
 TEST(Checker, unrollsRepeatWithItsStep) {
@@ -377,7 +393,8 @@ TEST(Checker, unrollsRepeatWithItsStep) {
     EXPECT_EQ(program.statements[10].repeatStep, 0);
 
     EXPECT_THAT(firstError("repeat 0 { erode 1 }"), HasSubstr("2:8: the number of repetitions must be 1 to 100000"));
-    EXPECT_THAT(firstError("repeat 2.5 { erode 1 }"), HasSubstr("2:8: the number of repetitions must be a whole number"));
+    EXPECT_THAT(firstError("repeat 2.5 { erode 1 }"),
+                HasSubstr("2:8: the number of repetitions must be a whole number"));
     EXPECT_THAT(firstError("erode step"), HasSubstr("2:7: 'step' has a meaning inside 'repeat' only"));
     EXPECT_THAT(firstError("repeat 2 { param a = 1 }"), HasSubstr("2:12: 'param' cannot be repeated"));
     // An error inside is told once, not at every step.
@@ -388,8 +405,10 @@ TEST(Checker, warnsOfWhatIsProbablyNotMeant) {
     EXPECT_THAT(warningsOf("let a = noise(1mm)\ncoat soot 1"), ElementsAre("2:5: 'a' is never used"));
     EXPECT_THAT(warningsOf("param p = 1\ncurve c = (0, 0) (1, 1)"),
                 ElementsAre("2:7: 'p' is never used", "3:7: 'c' is never used"));
-    EXPECT_THAT(warningsOf("coat soot 1 1.5"), ElementsAre("2:13: the factor 1.5 is beyond 0 to 1 and will be clamped"));
-    EXPECT_THAT(warningsOf("coat soot 1 0.3 - 0.5"), ElementsAre("2:17: the factor -0.2 is beyond 0 to 1 and will be clamped"));
+    EXPECT_THAT(warningsOf("coat soot 1 1.5"),
+                ElementsAre("2:13: the factor 1.5 is beyond 0 to 1 and will be clamped"));
+    EXPECT_THAT(warningsOf("coat soot 1 0.3 - 0.5"),
+                ElementsAre("2:17: the factor -0.2 is beyond 0 to 1 and will be clamped"));
     EXPECT_THAT(warningsOf("grow soot 1"), ElementsAre("2:6: there is no layer of 'soot' yet: nothing happens"));
     EXPECT_THAT(warningsOf("coat soot 1\ngrow soot 1\nconvert soot to dirt 0.5\ngrow dirt 1"), IsEmpty());
 }

@@ -6,7 +6,7 @@
 
 #include <gmock/gmock.h>
 
-#include <chrono>
+#include <ctime>
 
 namespace patina {
 namespace {
@@ -50,17 +50,19 @@ TEST(HostileInput, deepBracketsAreAnErrorNotAStackOverflow) {
 }
 
 TEST(HostileInput, deepBlocksAreAnErrorNotAStackOverflow) {
-    EXPECT_THAT(briefly(findingsOf("new copper\n" + repeated("repeat 2 {\n", 100000)))[0],
-                HasSubstr("blocks are nested more than 16 deep"));
+    EXPECT_THAT(briefly(findingsOf("new copper\n" + repeated("repeat 1 {\n", 100000))),
+                ElementsAre("18:10: blocks are nested more than 16 deep"));
 }
 
 TEST(HostileInput, longChainsAreAnErrorNotAStackOverflow) {
-    EXPECT_THAT(briefly(findingsOf("new copper\ncoat soot 1" + repeated(" + 1", 100000))),
+    EXPECT_THAT(briefly(findingsOf("new copper\ncoat soot 1" + repeated(" + 1", 15000))),
                 ElementsAre(HasSubstr("the statement is too long")));
-    EXPECT_THAT(briefly(findingsOf("new copper\ncoat soot 1 " + repeated("noise(1) * ", 100000) + "1")),
+    EXPECT_THAT(briefly(findingsOf("new copper\ncoat soot 1 " + repeated("noise(1) * ", 5000) + "1")),
                 ElementsAre(HasSubstr("the statement is too long")));
-    EXPECT_NO_THROW(readScript("new copper\ncoat soot " + repeated("-", 100000) + "1"));
+    EXPECT_NO_THROW(readScript("new copper\ncoat soot " + repeated("-", 10000) + "1"));
     EXPECT_NO_THROW(readScript("new copper\ncoat soot 1" + repeated(" + 1", 500)));
+    EXPECT_THAT(briefly(findingsOf("new copper\ncoat soot 1" + repeated(" + 1", 100000))),
+                ElementsAre("2:1: the statement is too long"));
     readAnything("new copper\nerode 1 " + repeated("as x ", 100000));
     readAnything("new copper\ncurve c = " + repeated("(1, 2) ", 100000));
 }
@@ -80,22 +82,22 @@ TEST(HostileInput, repeatsThatMultiplyAreAnErrorNotAnEndlessWait) {
 }
 
 TEST(HostileInput, hugeTextsEndSoon) {
-    const auto before = std::chrono::steady_clock::now();
-    const std::size_t size = std::size_t{4} << 20;
-    EXPECT_THAT(briefly(findingsOf(repeated("x", size + 1))),
+    const std::clock_t before = std::clock(); // of this process: other work on the machine does not count
+    const std::size_t largest = std::size_t{4} << 20;
+    const std::size_t size = largest / 8;
+    EXPECT_THAT(briefly(findingsOf(repeated("x", largest + 1))),
                 ElementsAre(HasSubstr("more than the 4 MiB a script can have")));
-    for (const char* piece : {"x", "(", ")", "\"", "\"\n", "{", "}", ";", "#", "/", "\n", "\xFF", "(\n", "coat soot (\n",
-                              "\xC2\xB5", "coat soot 1;", "erode 1 #\n", "1.", "a.b_1.2 ", std::string("\0", 1).c_str()})
-        readAnything(repeated(piece, *piece ? size / std::string(piece).size() : 0));
-    // One line, a hundred thousand statements: places are still found quickly.
-    EXPECT_THAT(readScript("new copper;" + repeated("erode 1 µm_", 0) + repeated("erode 1µm;", 50000)).statements.size(),
-                50001u);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - before;
-    EXPECT_LT(seconds.count(), 60.0);
+    for (const char* piece : {"x", "(", ")", "\"", "\"\n", "{", "}", ";", "#", "/", "\n", "\xFF", "(\n",
+                              "coat soot (\n", "\xC2\xB5", "coat soot 1;", "erode 1 #\n", "1.", "a.b_1.2 "})
+        readAnything(repeated(piece, size / std::string(piece).size()));
+    // One line, twenty thousand statements: places are still found quickly.
+    EXPECT_THAT(readScript("new copper;" + repeated("erode 1µm;", 20000)).statements.size(), 20001u);
+    EXPECT_LT(static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC, 60.0);
 }
 
 TEST(HostileInput, bytesThatAreNoTextAreNamed) {
-    EXPECT_THAT(briefly(findingsOf(std::string("new copper\ncoat soot 1 \0 2", 27)))[0], HasSubstr("found a byte 0x00"));
+    EXPECT_THAT(briefly(findingsOf(std::string("new copper\ncoat soot 1 \0 2", 27)))[0],
+                HasSubstr("found a byte 0x00"));
     EXPECT_THAT(briefly(findingsOf("new copper\ncoat soot 1 \x80"))[0], HasSubstr("found a byte 0x80"));
     EXPECT_THAT(briefly(findingsOf("new copper\ncoat soot 1 é"))[0], HasSubstr("found 'é'"));
     EXPECT_NO_THROW(readScript("\xEF\xBB\xBFnew copper\n"));
@@ -107,16 +109,33 @@ TEST(HostileInput, fuzzedScriptsNeverCrash) {
     const std::vector<std::string> seeds = {
         "new copper;\ncoat tarnish_1 0.35 texture(BD.linear_1.20);\ncoat cuprite_2 1.2 texture(DPD.linear_5.40) * (1 - "
         "wetness);\nerode 0.5 texture(BD.linear_5.20) of full by hardness and metal;\nrender maps;\n",
-        "param t = 2mm\nlet m = min(noise(1mm), turbulence(2mm, 3)) # µ\nnew copper\nrepeat 3 { coat soot t * step m as "
+        "param t = 2mm\nlet m = min(noise(1mm), turbulence(2mm, 3)) # µ\nnew copper\nrepeat 3 { coat soot t * step m "
+        "as "
         "x; }\nfill dirt 40 above smooth(2mm)\npolish area 0.3 window 2 of copper\noffset wax 1mm tangent-sphere 5 "
         "global\n",
         "curve c = (0, 0) (5, 1.2) (30, 2); seed 5; open \"x.vdb\"\nconvert posnjakite to brochantite 0.6 exposure\n"
         "coat soot c(3) texture(RD(rate=linear, step=5, total=20, cell=0.3mm, from=(0,0,1), arrival=1-slope))\n",
     };
-    const std::vector<std::string> tokens = {"(", ")", "{", "}", ";", "\n", "\"", "#", "//", ",", "=", "-", "+", "/", "*",
-                                             ".", "_", "1", "0", "1e9", "1e308", "mm", "µm", "nm ", " of full", " as ",
-                                             " by ", "let ", "repeat 2 {", "step", "texture(", "BD.linear_1.20", "coat ",
-                                             "soot ", "copper", "new ", "noise", "tangent-sphere", "\xFF", "\xC2"};
+    const std::vector<std::string> tokens = {"(",          ")",
+                                             "{",          "}",
+                                             ";",          "\n",
+                                             "\"",         "#",
+                                             "//",         ",",
+                                             "=",          "-",
+                                             "+",          "/",
+                                             "*",          ".",
+                                             "_",          "1",
+                                             "0",          "1e9",
+                                             "1e308",      "mm",
+                                             "µm",         "nm ",
+                                             " of full",   " as ",
+                                             " by ",       "let ",
+                                             "repeat 2 {", "step",
+                                             "texture(",   "BD.linear_1.20",
+                                             "coat ",      "soot ",
+                                             "copper",     "new ",
+                                             "noise",      "tangent-sphere",
+                                             "\xFF",       "\xC2"};
     const KeyedRandom random(1996, "fuzz", "script");
     for (std::uint32_t round = 0; round < 6000; ++round) {
         std::string text = seeds[round % seeds.size()];

@@ -67,8 +67,7 @@ render maps;
     EXPECT_DOUBLE_EQ(*std::get<Offset>(program.statements[13].action).tangentSphereThicknessUm, 5.0);
     EXPECT_EQ(std::get<Render>(program.statements[14].action).what, "maps");
     // Nothing but the posnjakite that was never laid.
-    EXPECT_THAT(briefly(program.warnings),
-                ElementsAre("7:9: there is no layer of 'posnjakite' yet: nothing happens"));
+    EXPECT_THAT(briefly(program.warnings), ElementsAre("7:9: there is no layer of 'posnjakite' yet: nothing happens"));
 }
 
 TEST(Parser, readsTheOtherClauses) {
@@ -138,11 +137,12 @@ TEST(Parser, takesOfFullInsideAndBehindTheTexture) {
 }
 
 TEST(Parser, readsEveryArgumentOfGrowth) {
-    const Program program = readScript(
-        "new copper\n"
-        "coat soot 1 texture(RDR(rate=cubic, step=1, total=2, cell=50, arrival=1 - exposure, from=(3, 0, 4), reach=1mm))\n"
-        "coat soot 1 texture(DPD(rate=cubic, step=1, total=2, blocked=wetness, patch=12, seeding=1e-4))\n"
-        "coat soot 1 texture(ST(rate=parabolic, step=1, total=2, points=300))\n");
+    const Program program =
+        readScript("new copper\n"
+                   "coat soot 1 texture(RDR(rate=cubic, step=1, total=2, cell=50, arrival=1 - exposure, from=(3, 0, "
+                   "4), reach=1mm))\n"
+                   "coat soot 1 texture(DPD(rate=cubic, step=1, total=2, blocked=wetness, patch=12, seeding=1e-4))\n"
+                   "coat soot 1 texture(ST(rate=parabolic, step=1, total=2, points=300))\n");
     const GrowthCall& relaxed = *coatAt(program, 1).map->growth;
     EXPECT_DOUBLE_EQ(*relaxed.cellUm, 50.0);
     EXPECT_EQ(relaxed.arrival->text, "-");
@@ -228,8 +228,7 @@ TEST(Parser, namesThePlaceWhereSomethingOpenedThatIsNotClosed) {
     EXPECT_THAT(briefly(findingsOf("new copper\ncoat dirt 2)")), ElementsAre("2:12: ')' closes no '('"));
     EXPECT_THAT(briefly(findingsOf("new copper\n}\n")), ElementsAre("2:1: '}' closes no '{'"));
     EXPECT_THAT(briefly(findingsOf("new copper\n{ coat dirt 2 }\n")), ElementsAre("2:1: a block stands alone"));
-    EXPECT_THAT(briefly(findingsOf("new copper\nrepeat 2\ncoat dirt 2\n")),
-                ElementsAre("2:1: 'repeat' needs a block"));
+    EXPECT_THAT(briefly(findingsOf("new copper\nrepeat 2\ncoat dirt 2\n")), ElementsAre("2:1: 'repeat' needs a block"));
 }
 
 TEST(Parser, findsTheErrorsBehindAnOpenBracket) {

@@ -4,7 +4,6 @@
 
 #include <gmock/gmock.h>
 
-#include <fstream>
 #include <map>
 
 namespace patina {
@@ -59,6 +58,27 @@ TEST(ShippedScripts, areVerbatimInThePaper) {
     const std::string printed = readTextFile(paper);
     for (const char* name : {"marine.patina", "rural.patina", "urban.patina"})
         EXPECT_NE(printed.find(readTextFile(scriptPath(name))), std::string::npos) << name;
+}
+
+TEST(LanguageReference, hasExamplesThatAreScripts) {
+    const std::string text = readTextFile(std::filesystem::path(PATINA_SOURCE_DIR) / "docs" / "language.md");
+    int examples = 0;
+    std::size_t at = 0;
+    while ((at = text.find("```\n", at)) != std::string::npos) {
+        const std::size_t end = text.find("```", at + 4);
+        ASSERT_NE(end, std::string::npos);
+        const std::string block = text.substr(at + 4, end - at - 4);
+        at = end + 4;
+        if (block.find("\nnew copper") == std::string::npos && block.compare(0, 4, "new ") != 0)
+            continue;
+        ++examples;
+        try {
+            EXPECT_TRUE(readScript(block).warnings.empty()) << block;
+        } catch (const ScriptError& error) {
+            ADD_FAILURE() << error.what();
+        }
+    }
+    EXPECT_EQ(examples, 2);
 }
 
 TEST(ShippedScripts, tellOneHistoryInSixSteps) {

@@ -80,17 +80,19 @@ const char* const quads = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\
                           "vt 1 1\nvt 0 1\nf 4/1 3/2 2/3 1/4\nf 5/1/1 6/2/1 7/3/1 8/4/1\nf 1//1 2//1 6//1 5//1\n"
                           "f -6 -5 -1 -2\nf 3 4 8 7\nf 1 5 8\nf 1 8 4\n";
 
-TEST(MeshFileFuzz, brokenObjNeverCrashes) { fuzz("a.obj", quads, 1500); }
+TEST(MeshFileFuzz, brokenObjNeverCrashes) {
+    fuzz("a.obj", quads, 800);
+}
 
 TEST(MeshFileFuzz, brokenOffNeverCrashes) {
-    fuzz("a.off", "OFF\n5 3 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0.5 2 1\n4 0 1 2 3\n3 3 2 4\n3 0 1 4\n", 1000);
+    fuzz("a.off", "OFF\n5 3 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0.5 2 1\n4 0 1 2 3\n3 3 2 4\n3 0 1 4\n", 500);
 }
 
 TEST(MeshFileFuzz, brokenTextStlNeverCrashes) {
     fuzz("a.stl",
          "solid thing\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
          "facet normal 0 0 1\nouter loop\nvertex 1 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n",
-         1000);
+         500);
 }
 
 TEST(MeshFileFuzz, brokenTextPlyNeverCrashes) {
@@ -99,7 +101,7 @@ TEST(MeshFileFuzz, brokenTextPlyNeverCrashes) {
          "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty short age\nelement face 3\n"
          "property list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n0 0 0 1 2 3 4\n"
          "1 0 0 1 2 3 4\n1 1 0 1 2 3 4\n0 1 0 1 2 3 4\n.5 2 1 1 2 3 4\n4 0 1 2 3 2 0 0\n3 3 2 4 0\n3 0 1 4 1 .5\n",
-         1500);
+         800);
 }
 
 TEST(MeshFileFuzz, brokenBinaryPlyNeverCrashes) {
@@ -107,7 +109,7 @@ TEST(MeshFileFuzz, brokenBinaryPlyNeverCrashes) {
     cube.vertexAttributes["age"] = {0, 1, 2, 3, 4, 5, 6, 7};
     const TemporaryFile file("whole.ply", "");
     writePly(makeLimitSurface(cube, {SubdivisionScheme::none, -1, 0}), file.path());
-    fuzz("a.ply", bytesOf(file.path()), 1500);
+    fuzz("a.ply", bytesOf(file.path()), 800);
 }
 
 TEST(MeshFileFuzz, brokenBinaryStlNeverCrashes) {
@@ -119,7 +121,7 @@ TEST(MeshFileFuzz, brokenBinaryStlNeverCrashes) {
         bytes.append(reinterpret_cast<const char*>(corners + 9 * i), 36);
         bytes.append(2, '\0');
     }
-    fuzz("a.stl", bytes, 1000);
+    fuzz("a.stl", bytes, 500);
 }
 
 } // namespace

@@ -101,12 +101,13 @@ TEST(MeshFile, objColoursAreAttributes) {
 }
 
 TEST(MeshFile, plyTextReadsCustomPropertiesOfAnyType) {
-    const Mesh mesh = readText(
-        "custom.ply", "ply\nformat ascii 1.0\ncomment hello\nelement vertex 4\nproperty double x\nproperty double y\n"
-                      "property double z\nproperty uchar age\nproperty float wetness\nproperty uchar red\n"
-                      "property uchar green\nproperty uchar blue\nelement face 2\nproperty list uint8 uint vertex_index\n"
-                      "property uchar flags\nend_header\n0 0 0 12 0.5 255 0 51\n1 0 0 200 1e-50 255 0 51\n"
-                      "1 1 0 7 -2 255 0 51\n0 1 0 0 3 255 0 51\n3 0 1 2 17\n3 0 2 3 4\n");
+    const Mesh mesh =
+        readText("custom.ply",
+                 "ply\nformat ascii 1.0\ncomment hello\nelement vertex 4\nproperty double x\nproperty double y\n"
+                 "property double z\nproperty uchar age\nproperty float wetness\nproperty uchar red\n"
+                 "property uchar green\nproperty uchar blue\nelement face 2\nproperty list uint8 uint vertex_index\n"
+                 "property uchar flags\nend_header\n0 0 0 12 0.5 255 0 51\n1 0 0 200 1e-50 255 0 51\n"
+                 "1 1 0 7 -2 255 0 51\n0 1 0 0 3 255 0 51\n3 0 1 2 17\n3 0 2 3 4\n");
     EXPECT_THAT(mesh.vertexAttributes.at("age"), ElementsAre(12.f, 200.f, 7.f, 0.f));
     EXPECT_THAT(mesh.vertexAttributes.at("wetness"), ElementsAre(0.5f, 0.f, -2.f, 3.f));
     EXPECT_FLOAT_EQ(mesh.vertexAttributes.at("blue")[3], 0.2f);
@@ -114,20 +115,21 @@ TEST(MeshFile, plyTextReadsCustomPropertiesOfAnyType) {
 }
 
 TEST(MeshFile, plyJoinsTheVerticesThatUvSeamsSplit) {
-    const Mesh mesh = readText("split.ply",
-                               "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\n"
-                               "property float z\nproperty float s\nproperty float t\nelement face 2\n"
-                               "property list uchar int vertex_indices\nend_header\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n"
-                               "1 0 0 0.5 0.5\n1 1 0 1 1\n0 1 0 0 1\n3 0 1 2\n3 3 4 5\n");
+    const Mesh mesh =
+        readText("split.ply", "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\n"
+                              "property float z\nproperty float s\nproperty float t\nelement face 2\n"
+                              "property list uchar int vertex_indices\nend_header\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n"
+                              "1 0 0 0.5 0.5\n1 1 0 1 1\n0 1 0 0 1\n3 0 1 2\n3 3 4 5\n");
     EXPECT_EQ(mesh.positions.size(), 4u);
     EXPECT_EQ(mesh.uvs.size(), 5u) << "one shared, one split";
     EXPECT_EQ(mesh.uvs[mesh.faceUvs[3]], V2f(0.5f, 0.5f));
 }
 
 TEST(MeshFile, plyStripsBecomeTriangles) {
-    const Mesh mesh = readText("strips.ply", "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
-                                             "property float z\nelement tristrips 1\nproperty list int int vertex_indices\n"
-                                             "end_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n9 0 1 2 3 4 -1 0 1 2\n");
+    const Mesh mesh =
+        readText("strips.ply", "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
+                               "property float z\nelement tristrips 1\nproperty list int int vertex_indices\n"
+                               "end_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n9 0 1 2 3 4 -1 0 1 2\n");
     EXPECT_THAT(mesh.faceVertices, ElementsAre(0, 1, 2, 2, 1, 3, 2, 3, 4, 0, 1, 2));
 }
 
@@ -137,10 +139,11 @@ TEST(MeshFile, stlMergesVerticesInTextAndBinary) {
         EXPECT_EQ(mesh.positions.size(), 4u);
         EXPECT_EQ(mesh.faceCount(), 2u);
     }
-    const Mesh text = readText("a.stl", "solid thing\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n"
-                                        "   vertex 0 1 0\n  endloop\n endfacet\n facet normal 0 0 1\n  outer loop\n"
-                                        "   vertex 1 0 0\n   vertex 1 1 0\n   vertex 0 1 0\n  endloop\n endfacet\n"
-                                        "endsolid thing\n");
+    const Mesh text =
+        readText("a.stl", "solid thing\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n"
+                          "   vertex 0 1 0\n  endloop\n endfacet\n facet normal 0 0 1\n  outer loop\n"
+                          "   vertex 1 0 0\n   vertex 1 1 0\n   vertex 0 1 0\n  endloop\n endfacet\n"
+                          "endsolid thing\n");
     EXPECT_EQ(text.positions.size(), 4u);
     EXPECT_EQ(text.faceCount(), 2u);
 }
@@ -149,8 +152,9 @@ TEST(MeshFile, offReadsPolygonsCommentsAndColours) {
     const Mesh mesh = readText("a.off", "OFF # made by hand\n\n5 2 0\n0 0 0\n1 0 0 # here\n1 1 0\n0 1 0\n0.5 2 0\n"
                                         "4 0 1 2 3 255 0 0\n3 3 2 4\n");
     EXPECT_THAT(mesh.faceSizes, ElementsAre(4, 3));
-    EXPECT_EQ(readText("c.off", "COFF\n3 1 0\n0 0 0 255 0 0 255\n1 0 0 255 0 0 255\n0 1 0 9 9 9 9\n3 0 1 2\n").faceCount(),
-              1u);
+    EXPECT_EQ(
+        readText("c.off", "COFF\n3 1 0\n0 0 0 255 0 0 255\n1 0 0 255 0 0 255\n0 1 0 9 9 9 9\n3 0 1 2\n").faceCount(),
+        1u);
 }
 
 TEST(MeshFile, objWrittenReadsBackToTheSameBits) {
@@ -194,13 +198,17 @@ TEST(MeshFile, sharedModelsHaveTheirKnownSizes) {
         const char* name;
         std::size_t vertices, faces;
         bool uvs;
-    } models[] = {
-        {"happy_buddha_60k_uv.obj", 30008, 60044, true},   {"igea_268k.ply", 134345, 268686, false},
-        {"spot_control_mesh.obj", 188, 180, true},         {"spot_quadrangulated.obj", 2930, 2928, true},
-        {"stanford_bunny_holes.obj", 34834, 69451, false}, // 35,947 less 1,113 unreferenced
-        {"suzanne.obj", 507, 500, false},                  {"beetle_nonmanifold.obj", 1148, 2053, false},
-        {"teapot_open_patches.obj", 3644, 6320, false},    {"woody_flat_sheet.obj", 694, 1267, false},
-        {"rocker_arm_genus1.obj", 10044, 20088, false},    {"copper_strip_sheet.obj", 12545, 12288, true}};
+    } models[] = {{"happy_buddha_60k_uv.obj", 30008, 60044, true},
+                  {"igea_268k.ply", 134345, 268686, false},
+                  {"spot_control_mesh.obj", 188, 180, true},
+                  {"spot_quadrangulated.obj", 2930, 2928, true},
+                  {"stanford_bunny_holes.obj", 34834, 69451, false}, // 35,947 less 1,113 unreferenced
+                  {"suzanne.obj", 507, 500, false},
+                  {"beetle_nonmanifold.obj", 1148, 2053, false},
+                  {"teapot_open_patches.obj", 3644, 6320, false},
+                  {"woody_flat_sheet.obj", 694, 1267, false},
+                  {"rocker_arm_genus1.obj", 10044, 20088, false},
+                  {"copper_strip_sheet.obj", 12545, 12288, true}};
     for (const auto& model : models) {
         PATINA_NEEDS_MODEL(model.name);
         const Mesh mesh = readMesh(sharedModel(model.name));
@@ -235,18 +243,21 @@ TEST(MeshFileErrors, emptyFilesAndFilesWithoutFaces) {
 }
 
 TEST(MeshFileErrors, nanAndInfinityNameTheVertex) {
-    EXPECT_THAT(errorOf("a.obj", "v 0 0 0\nv 1 nan 0\nv 0 1 0\nf 1 2 3\n"), HasSubstr("a.obj:2: vertex 2 is not a number"));
+    EXPECT_THAT(errorOf("a.obj", "v 0 0 0\nv 1 nan 0\nv 0 1 0\nf 1 2 3\n"),
+                HasSubstr("a.obj:2: vertex 2 is not a number"));
     EXPECT_THAT(errorOf("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 -inf\nf 1 2 3\n"), HasSubstr("vertex 3 is infinite"));
     EXPECT_THAT(errorOf("a.obj", "v 0 0 0\nv 1 1e300 0\nv 0 1 0\nf 1 2 3\n"), HasSubstr("vertex 2"));
     EXPECT_THAT(errorOf("a.obj", "v 0 0 0\nv 1 x 0\nv 0 1 0\nf 1 2 3\n"), HasSubstr("'x' where a number should be"));
     EXPECT_THAT(errorOf("a.obj", "v 0 0 0\nv 1 0\nv 0 1 0\nf 1 2 3\n"), HasSubstr("vertex 2 has too few numbers"));
-    EXPECT_THAT(errorOf("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 nan 0\n3 0 1 2\n"), HasSubstr("vertex 2 is not a number"));
+    EXPECT_THAT(errorOf("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 nan 0\n3 0 1 2\n"),
+                HasSubstr("vertex 2 is not a number"));
     std::vector<V3f> corners = twoTriangles;
     corners[4].y = std::numeric_limits<float>::quiet_NaN();
     EXPECT_THAT(errorOf("a.stl", binaryStl(corners)), HasSubstr("triangle 2 is not a number"));
-    EXPECT_THAT(errorOf("a.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-                                 "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
-                                 "0 0 0\n1 0 nan\n0 1 0\n3 0 1 2\n"),
+    EXPECT_THAT(errorOf("a.ply",
+                        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                        "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                        "0 0 0\n1 0 nan\n0 1 0\n3 0 1 2\n"),
                 HasSubstr("vertex 1 has a 'z' that is not a number"));
 }
 
@@ -259,9 +270,10 @@ TEST(MeshFileErrors, indicesOutOfRangeNameTheFace) {
                 HasSubstr("texture coordinate 9, but there are 1"));
     EXPECT_THAT(errorOf("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999999999999\n"), HasSubstr("not a corner"));
     EXPECT_THAT(errorOf("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), HasSubstr("face 0 names vertex 3"));
-    EXPECT_THAT(errorOf("a.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-                                 "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
-                                 "0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n"),
+    EXPECT_THAT(errorOf("a.ply",
+                        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                        "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                        "0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n"),
                 HasSubstr("face 0 names vertex -1"));
 }
 

@@ -74,7 +74,8 @@ TEST(RayScene, raysThroughASharedEdgeTakeTheSmallerTriangle) {
 
 TEST(RayScene, closestPointMatchesBruteForce) {
     PATINA_NEEDS_MODEL("suzanne.obj");
-    const SurfaceMesh surface = makeLimitSurface(readMesh(sharedModel("suzanne.obj")), {SubdivisionScheme::none, -1, 0});
+    const SurfaceMesh surface =
+        makeLimitSurface(readMesh(sharedModel("suzanne.obj")), {SubdivisionScheme::none, -1, 0});
     const RayScene scene(surface.positions, surface.triangles);
     const KeyedRandom random(1, "closest", "test");
     for (int i = 0; i < 1500; ++i) {
@@ -83,9 +84,8 @@ TEST(RayScene, closestPointMatchesBruteForce) {
                         static_cast<float>(4 * r[2] - 2));
         double expected = 1e300;
         for (const V3i& t : surface.triangles)
-            expected = std::min(expected,
-                                bruteForceDistance(V3d(point), V3d(surface.positions[t.x]), V3d(surface.positions[t.y]),
-                                                   V3d(surface.positions[t.z])));
+            expected = std::min(expected, bruteForceDistance(V3d(point), V3d(surface.positions[t.x]),
+                                                             V3d(surface.positions[t.y]), V3d(surface.positions[t.z])));
         const auto closest = scene.closest(point);
         ASSERT_TRUE(closest);
         EXPECT_NEAR(closest->distance, expected, 1e-6 * (1.0 + expected));

@@ -56,9 +56,8 @@ std::uint32_t poissonOfOne(std::uint32_t word) {
 ArrivalClock::ArrivalClock(const GrowthLattice& lattice, const KeyedRandom& clock, const KeyedRandom& thinning,
                            Rate rate, const std::vector<float>& arrival)
     : lattice_(lattice), clock_(clock), thinning_(thinning), arrival_(arrival) {
-    const bool uniform =
-        rate == Rate::perCell ||
-        std::all_of(lattice.areas.begin(), lattice.areas.end(), [](float area) { return area == 1.f; });
+    const bool uniform = rate == Rate::perCell || std::all_of(lattice.areas.begin(), lattice.areas.end(),
+                                                              [](float area) { return area == 1.f; });
     if (!uniform) {
         noArrival_.resize(lattice.size());
         for (std::size_t i = 0; i < lattice.size(); ++i)

@@ -56,7 +56,8 @@ class ArrivalClock {
 /// Hands every arrival up to `age` to rule(cell, time word, interval) in order of time, one after the other, while the
 /// next interval's arrivals are being drawn. rule.prefetch(cell) is called a little ahead.
 /// \throws Interrupted when cancelled.
-template <class Rule> void followArrivals(const ArrivalClock& clock, double age, Progress* progress, Rule&& rule) {
+template <class Rule>
+void followArrivals(const ArrivalClock& clock, double age, Progress* progress, Rule&& rule) {
     constexpr std::size_t ahead = 12;
     const auto intervals = static_cast<std::uint32_t>(std::ceil(age));
     const auto endOf = [age](std::uint32_t i) { return std::min(1.0, age - i); };

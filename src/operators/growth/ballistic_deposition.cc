@@ -20,8 +20,7 @@ struct BallisticRule {
     /// h <- max[h(neighbours), h + 1]
     void operator()(std::uint32_t cell, std::uint32_t, std::uint32_t) {
         const auto& n = neighbours[cell];
-        height[cell] =
-            std::max({height[cell] + 1, height[n[0]], height[n[1]], height[n[2]], height[n[3]]});
+        height[cell] = std::max({height[cell] + 1, height[n[0]], height[n[1]], height[n[2]], height[n[3]]});
         ++particles;
     }
 };

@@ -2,9 +2,9 @@
 // grow thicker where they are supported.
 //
 // Bottom level. A covered cell takes each principal neighbour after an exponential waiting time of rate `spread`
-// (unblocked neighbour) or `blockedSpread` (blocked). Waiting times are keyed by the link, so the moment at which a cell
-// is covered is a shortest path from the seeds: one answer, found by Dijkstra's algorithm, for all of time at once.
-// Seed patches come into it in order of time, each only if its place is still free.
+// (unblocked neighbour) or `blockedSpread` (blocked). Waiting times are keyed by the link, so the moment at which a
+// cell is covered is a shortest path from the seeds: one answer, found by Dijkstra's algorithm, for all of time at
+// once. Seed patches come into it in order of time, each only if its place is still free.
 //
 // Upper levels. At each tick of its Poisson clock a covered cell rises from level l to l + 1 with probability
 // `thickening` times the fraction of its supporters (itself and its four neighbours) that have reached level l.

@@ -35,7 +35,7 @@ void checkOptions(const GrowthLattice& lattice, const GrowthOptions& options) {
         check(cell >= 0 && std::size_t(cell) < lattice.size(), "a seed cell outside the lattice", "");
 }
 
-GrownHeights growHeights(const GrowthRun& run) {
+GrownHeights runModel(const GrowthRun& run) {
     switch (run.options.model) {
     case GrowthModel::steadyThickening:
         return growSteadyThickening(run);
@@ -83,7 +83,7 @@ GrowthScale expectedScale(const GrowthOptions& given) {
     const bool periodic = options.model != GrowthModel::steadyThickening;
     const GrowthLattice plane = flatLattice(side, side, periodic);
     const GrowthRun run{plane, options, age, 0x9e3779b97f4a7c15u, "reference plane", nullptr};
-    const GrowthStatistics statistics = measureHeights(plane, growHeights(run).height);
+    const GrowthStatistics statistics = measureHeights(plane, runModel(run).height);
     return {statistics.mean, statistics.interfaceWidth};
 }
 
@@ -105,10 +105,16 @@ double growthMarginCells(const GrowthOptions& options) {
     }
 }
 
+std::vector<float> growHeights(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
+                               std::string_view label, Progress* progress) {
+    checkOptions(lattice, options);
+    return runModel({lattice, options, options.age(), seed, label, progress}).height;
+}
+
 GrowthPattern grow(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
                    std::string_view label, Progress* progress) {
     checkOptions(lattice, options);
-    GrownHeights grown = growHeights({lattice, options, options.age(), seed, label, progress});
+    GrownHeights grown = runModel({lattice, options, options.age(), seed, label, progress});
     GrowthPattern pattern;
     pattern.statistics = measureHeights(lattice, grown.height);
     pattern.statistics.particles = grown.particles;

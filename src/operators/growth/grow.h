@@ -31,11 +31,15 @@ struct GrowthScale {
 /// smaller one stopped (heights never fall), a piece of a model grows as the whole does from growthMarginCells inward
 /// of the cut, and the bits do not depend on the number of threads.
 /// Particles: RD and RDR particles are of one volume and arrive per area, so a cell of area a collects a of them per
-/// monolayer, each 1/a layers thick. BD, DPD and DPD_BS speak of cells: one per cell and monolayer, each one layer thick.
-/// Factors are heights over GrowthScale::top(), clamped to 0…1.
-/// \throws RunError for options out of range or vectors that do not fit the lattice; Interrupted when cancelled.
+/// monolayer, each 1/a layers thick. BD, DPD and DPD_BS speak of cells: one per cell and monolayer, each one layer
+/// thick. Factors are heights over GrowthScale::top(), clamped to 0…1. \throws RunError for options out of range or
+/// vectors that do not fit the lattice; Interrupted when cancelled.
 GrowthPattern grow(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
                    std::string_view label, Progress* progress = nullptr);
+
+/// The heights alone, without factors (and the reference plane they cost) and statistics.
+std::vector<float> growHeights(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
+                               std::string_view label, Progress* progress = nullptr);
 
 /// Mean and deviation by which factors are made, at the age of the step, or of the last step where options.ofFull.
 /// In closed form for RD, otherwise of the same model on a reference plane with a key of its own: never of the object.

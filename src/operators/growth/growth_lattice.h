@@ -1,5 +1,6 @@
 #pragma once
-// The lattice on which layers grow: cells on a surface, each with a place, a share of the area and up to four neighbours.
+// The lattice on which layers grow: cells on a surface, each with a place, a share of the area and up to four
+// neighbours.
 
 #include "surface/mesh.h"
 
@@ -16,14 +17,14 @@ namespace patina {
 struct GrowthLattice {
     static constexpr int noCell = -1;
 
-    double cell = 1.0;                             ///< pitch, scene units
-    std::vector<Imath::V3i> keys;                  ///< lattice coordinate: what random numbers are keyed by
-    std::vector<std::array<int, 4>> neighbours;    ///< indices or noCell; the relation is symmetric
-    std::vector<float> areas;                      ///< area of surface per cell, in units of cell²
-    std::vector<Imath::V3f> centres;               ///< on the surface, scene units
-    std::vector<Imath::V3f> normals;               ///< outward, unit
-    std::vector<std::uint8_t> axes;                ///< the axis (0, 1, 2) along which the cell's column runs
-    Imath::V3d period{0.0, 0.0, 0.0};              ///< scene units; 0: does not repeat along that axis
+    double cell = 1.0;                          ///< pitch, scene units
+    std::vector<Imath::V3i> keys;               ///< lattice coordinate: what random numbers are keyed by
+    std::vector<std::array<int, 4>> neighbours; ///< indices or noCell; the relation is symmetric
+    std::vector<float> areas;                   ///< area of surface per cell, in units of cell²
+    std::vector<Imath::V3f> centres;            ///< on the surface, scene units
+    std::vector<Imath::V3f> normals;            ///< outward, unit
+    std::vector<std::uint8_t> axes;             ///< the axis (0, 1, 2) along which the cell's column runs
+    Imath::V3d period{0.0, 0.0, 0.0};           ///< scene units; 0: does not repeat along that axis
 
     std::size_t size() const { return keys.size(); }
 };
@@ -42,7 +43,7 @@ GrowthLattice flatLattice(int width, int height, bool periodic, double cell = 1.
 GrowthLattice surfaceLattice(const SurfaceMesh& surface, double cellSize);
 
 /// How far from a cut (in cells) a cell's links may differ from those in the whole model.
-constexpr int latticeMarginCells = 32;
+constexpr int latticeMarginCells = 40;
 
 /// From one cell's centre to another's, the short way round where the lattice repeats; scene units.
 Imath::V3d linkVector(const GrowthLattice& lattice, int from, int to);

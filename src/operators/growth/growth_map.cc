@@ -55,7 +55,8 @@ struct GrowthMap::Index {
         }
         return nullptr;
     }
-    template <class Visit> void visitAround(const Imath::V3d& p, double reach, Visit&& visit) const {
+    template <class Visit>
+    void visitAround(const Imath::V3d& p, double reach, Visit&& visit) const {
         const Imath::V3i low = cubeOf(p - Imath::V3d(reach)), high = cubeOf(p + Imath::V3d(reach));
         for (int x = low.x; x <= high.x; ++x)
             for (int y = low.y; y <= high.y; ++y)
@@ -72,7 +73,7 @@ GrowthMap::GrowthMap(const GrowthLattice& lattice, const std::vector<float>& val
     auto index = std::make_unique<Index>();
     index->cell = lattice.cell;
     index->radius = std::max(1.0, filterWidth / lattice.cell);
-    index->side = std::max(2.0, index->radius);
+    index->side = std::max(4.0, index->radius);
 
     std::vector<std::pair<Imath::V3i, std::uint32_t>> order(lattice.size());
     for (std::size_t i = 0; i < order.size(); ++i)
@@ -116,6 +117,8 @@ GrowthMap::~GrowthMap() = default;
 double GrowthMap::value(const MapPoint& point) const {
     const Index& index = *index_;
     const Imath::V3d position = point.position / index.cell;
+    if (!(position.length2() < 1e18)) // not a number, or beyond what cubes can count
+        return 0.0;
     const Imath::V3f origin(position), normal(point.normal);
     const float inverse = static_cast<float>(1.0 / index.radius);
     double weights = 0.0, sum = 0.0;

@@ -5,7 +5,9 @@
 
 namespace patina {
 
-std::vector<std::string> growthRateNames() { return {"linear", "parabolic", "cubic", "logarithmic"}; }
+std::vector<std::string> growthRateNames() {
+    return {"linear", "parabolic", "cubic", "logarithmic"};
+}
 
 std::optional<GrowthRate> growthRateNamed(std::string_view name) {
     if (name == "linear")

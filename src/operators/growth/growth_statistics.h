@@ -14,8 +14,8 @@ struct GrowthStatistics {
     double mean = 0.0;
     double interfaceWidth = 0.0; ///< rms deviation of the height (Rq)
     double skewness = 0.0;
-    double coverage = 0.0;  ///< fraction of the area that is covered at all
-    double density = 0.0;   ///< solid below the interface: 1 for compact layers, 0.3 for a ballistic one
+    double coverage = 0.0;   ///< fraction of the area that is covered at all
+    double density = 0.0;    ///< solid below the interface: 1 for compact layers, 0.3 for a ballistic one
     std::size_t patches = 0; ///< connected covered pieces
 };
 

@@ -30,7 +30,8 @@ class VoxelTable {
             slots_[slot] = static_cast<int>(i);
         }
     }
-    template <class Visit> void visit(const Imath::V3i& voxel, Visit&& visit) const {
+    template <class Visit>
+    void visit(const Imath::V3i& voxel, Visit&& visit) const {
         std::size_t slot = hash(voxel) & mask_;
         while (slots_[slot] != none && !(places_[slots_[slot]].voxel == voxel))
             slot = (slot + 1) & mask_;
@@ -79,7 +80,8 @@ class Linker {
     }
 
   private:
-    template <class Work> void forAll(Work&& work) {
+    template <class Work>
+    void forAll(Work&& work) {
         tbb::parallel_for(tbb::blocked_range<int>(0, static_cast<int>(lattice_.size()), 1024), [&](const auto& range) {
             for (int cell = range.begin(); cell < range.end(); ++cell)
                 work(cell);
@@ -135,7 +137,7 @@ class Linker {
         const Imath::V3d target = from + step;
         const Imath::V3i middle(int(std::floor(target.x)), int(std::floor(target.y)), int(std::floor(target.z)));
         int best = none;
-        double bestScore = bySight ? 1.5 : 2.0;
+        double bestScore = bySight ? 1.6 : 2.5;
         for (int x = -2; x <= 2; ++x)
             for (int y = -2; y <= 2; ++y)
                 for (int z = -2; z <= 2; ++z)
@@ -144,7 +146,7 @@ class Linker {
                             return;
                         const Imath::V3d way = centre(other) - from;
                         // Forwards, near, and not through to the back of a thin sheet.
-                        if ((way ^ step) <= 0.0 || way.length() > 2.1 || (normal(other) ^ normal(cell)) < -0.3)
+                        if ((way ^ step) <= 0.0 || way.length() > 3.0 || (normal(other) ^ normal(cell)) < -0.3)
                             return;
                         const double score = bySight ? (centre(other) - target).length() : way.length();
                         if (score < bestScore) {
@@ -191,6 +193,8 @@ class Linker {
 
 } // namespace
 
-void linkCells(GrowthLattice& lattice, const std::vector<CellPlace>& places) { Linker(lattice, places).link(); }
+void linkCells(GrowthLattice& lattice, const std::vector<CellPlace>& places) {
+    Linker(lattice, places).link();
+}
 
 } // namespace patina

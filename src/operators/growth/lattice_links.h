@@ -23,9 +23,9 @@ struct CellPlace {
 /// Fills lattice.neighbours; `places` is sorted and parallel to the lattice's cells.
 ///
 /// First each cell and the cell of the same facet in the next column choose each other, where the surface runs on from
-/// one to the other. What stays free lies at seams (where the dominant axis changes, at edges and creases) and is joined
-/// in a few rounds: each free side asks for the nearest cell with a free side in its direction, and those that ask for
-/// each other are joined. A round looks at most three cells around, so links are local.
+/// one to the other. What stays free lies at seams (where the dominant axis changes, at edges and creases) and is
+/// joined in a few rounds: each free side asks for the nearest cell with a free side in its direction, and those that
+/// ask for each other are joined. A round looks at most three cells around, twice, so links are local.
 void linkCells(GrowthLattice& lattice, const std::vector<CellPlace>& places);
 
 } // namespace patina

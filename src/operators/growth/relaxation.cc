@@ -19,7 +19,7 @@ struct RelaxationRule {
     std::vector<std::uint32_t>& count;
     int reach;
     std::uint64_t particles = 0;
-    std::vector<int> ball;        ///< cells within reach, nearest first
+    std::vector<int> ball;           ///< cells within reach, nearest first
     std::vector<std::uint32_t> mark; ///< the last particle that looked at a cell
     std::uint32_t stamp = 0;
 

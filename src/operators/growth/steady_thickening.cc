@@ -1,8 +1,8 @@
 // ST (paper section 3.3): thickness at a few evenly spread points, interpolated, growing with time, a little noise.
 //
 // Points are a Poisson-disk set in model space (Euclidean distance). Each block of about a sixth of the spacing offers
-// the cell with the smallest keyed number as a candidate; a candidate becomes a point when its number is the smallest of
-// all undecided candidates within the spacing, in a few rounds. Nothing depends on what lies farther away than those
+// the cell with the smallest keyed number as a candidate; a candidate becomes a point when its number is the smallest
+// of all undecided candidates within the spacing, in a few rounds. Nothing depends on what lies farther away than those
 // rounds reach, so a piece of a model has the points of the whole.
 
 #include "operators/growth/growth_run.h"
@@ -41,7 +41,8 @@ class PointGrid {
         return {int(std::floor(p.x / side_)), int(std::floor(p.y / side_)), int(std::floor(p.z / side_))};
     }
     void add(const Imath::V3d& p, std::uint32_t index) { cubes_[hash(cube(p))].push_back(index); }
-    template <class Visit> void visitNear(const Imath::V3d& p, Visit&& visit) const {
+    template <class Visit>
+    void visitNear(const Imath::V3d& p, Visit&& visit) const {
         const Imath::V3i c = cube(p);
         for (int x = -1; x <= 1; ++x)
             for (int y = -1; y <= 1; ++y)

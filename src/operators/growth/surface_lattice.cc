@@ -35,8 +35,8 @@ struct Corner {
     double a, b;
 };
 
-/// Twice the signed area of (p, q, x), computed the same way from both sides of an edge, so that a line through a shared
-/// edge belongs to exactly one of its triangles. Exactly on the edge counts as left of the edge's own direction.
+/// Twice the signed area of (p, q, x), computed the same way from both sides of an edge, so that a line through a
+/// shared edge belongs to exactly one of its triangles. Exactly on the edge counts as left of the edge's own direction.
 struct EdgeSide {
     double value;
     bool left;
@@ -111,8 +111,7 @@ void castLines(const SurfaceMesh& surface, int triangle, double cell, std::vecto
                     owner = flatAxis;
                 if (owner != axis)
                     continue;
-                const double depth =
-                    w[0] * p[order[0]][axis] + w[1] * p[order[1]][axis] + w[2] * p[order[2]][axis];
+                const double depth = w[0] * p[order[0]][axis] + w[1] * p[order[1]][axis] + w[2] * p[order[2]][axis];
                 Crossing crossing;
                 crossing.position[axis] = depth;
                 crossing.position[a] = x.a;

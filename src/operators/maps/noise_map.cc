@@ -12,21 +12,35 @@ namespace patina {
 
 namespace {
 
-double fade(double t) { return t * t * t * (t * (t * 6.0 - 15.0) + 10.0); }
+double fade(double t) {
+    return t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
+}
 
 /// Towards one of the midpoints of the twelve edges of a cube (four of them twice), dotted with the offset.
 double gradient(unsigned hash, double x, double y, double z) {
-    static constexpr std::array<std::array<signed char, 3>, 16> directions = {{{1, 1, 0},   {-1, 1, 0},  {1, -1, 0},
-                                                                               {-1, -1, 0}, {1, 0, 1},   {-1, 0, 1},
-                                                                               {1, 0, -1},  {-1, 0, -1}, {0, 1, 1},
-                                                                               {0, -1, 1},  {0, 1, -1},  {0, -1, -1},
-                                                                               {1, 1, 0},   {-1, 1, 0},  {0, -1, 1},
+    static constexpr std::array<std::array<signed char, 3>, 16> directions = {{{1, 1, 0},
+                                                                               {-1, 1, 0},
+                                                                               {1, -1, 0},
+                                                                               {-1, -1, 0},
+                                                                               {1, 0, 1},
+                                                                               {-1, 0, 1},
+                                                                               {1, 0, -1},
+                                                                               {-1, 0, -1},
+                                                                               {0, 1, 1},
+                                                                               {0, -1, 1},
+                                                                               {0, 1, -1},
+                                                                               {0, -1, -1},
+                                                                               {1, 1, 0},
+                                                                               {-1, 1, 0},
+                                                                               {0, -1, 1},
                                                                                {0, -1, -1}}};
     const auto& d = directions[hash % 16];
     return d[0] * x + d[1] * y + d[2] * z;
 }
 
-double lerp(double t, double a, double b) { return a + t * (b - a); }
+double lerp(double t, double a, double b) {
+    return a + t * (b - a);
+}
 
 void checkSize(double size) {
     if (!(size > 0.0) || !std::isfinite(size))

@@ -34,8 +34,8 @@ class NoiseMap : public ThicknessMap {
     double size_;
 };
 
-/// turbulence(size, octaves): the sum of |noise(2^i p / size)| / 2^i over the octaves, divided by the sum of 1 / 2^i, so
-/// within 0…1; dark veins where the noise is 0, mean about 0.2.
+/// turbulence(size, octaves): the sum of |noise(2^i p / size)| / 2^i over the octaves, divided by the sum of 1 / 2^i,
+/// so within 0…1; dark veins where the noise is 0, mean about 0.2.
 class TurbulenceMap : public ThicknessMap {
   public:
     /// \param octaves 1…16. \throws RunError when out of range or size is not positive.

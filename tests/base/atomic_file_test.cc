@@ -1,0 +1,69 @@
+#include "base/atomic_file.h"
+
+#include "base/errors.h"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+namespace patina {
+namespace {
+
+namespace fs = std::filesystem;
+
+class AtomicFileTest : public testing::Test {
+  protected:
+    void SetUp() override { fs::create_directories(folder_); }
+    void TearDown() override { fs::remove_all(folder_); }
+    std::size_t filesLeft() const {
+        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+    }
+    fs::path folder_ = fs::path(testing::TempDir()) / "patina_atomic_file_test";
+};
+
+TEST_F(AtomicFileTest, NothingIsLeftWithoutCommit) {
+    {
+        AtomicFile file(folder_ / "a.txt");
+        std::ofstream(file.temporary()) << "half";
+    }
+    EXPECT_EQ(filesLeft(), 0u);
+}
+
+TEST_F(AtomicFileTest, AnOlderFileSurvivesAFailure) {
+    writeTextFile(folder_ / "a.txt", "old");
+    {
+        AtomicFile file(folder_ / "a.txt");
+        std::ofstream(file.temporary()) << "half";
+    }
+    EXPECT_EQ(readTextFile(folder_ / "a.txt"), "old");
+}
+
+TEST_F(AtomicFileTest, TheTemporaryNameKeepsTheExtension) {
+    AtomicFile file(folder_ / "a.exr");
+    EXPECT_EQ(file.temporary().extension(), ".exr");
+}
+
+TEST_F(AtomicFileTest, AMissingFolderIsNamed) {
+    try {
+        AtomicFile file(folder_ / "no" / "a.txt");
+        FAIL();
+    } catch (const RunError& error) {
+        EXPECT_THAT(error.place(), testing::HasSubstr("no"));
+        EXPECT_EQ(error.code(), ExitCode::failed);
+    }
+}
+
+TEST_F(AtomicFileTest, AFileInTheWayOfAFolderIsAnError) {
+    writeTextFile(folder_ / "file", "x");
+    EXPECT_THROW(makeWritableFolder(folder_ / "file"), RunError);
+    EXPECT_THROW(makeWritableFolder(folder_ / "file" / "below"), RunError);
+    EXPECT_NO_THROW(makeWritableFolder(folder_ / "new" / "deep"));
+}
+
+TEST_F(AtomicFileTest, ReadingAFolderOrNothingIsAnError) {
+    EXPECT_THROW(readTextFile(folder_), RunError);
+    EXPECT_THROW(readTextFile(folder_ / "nothing"), RunError);
+}
+
+} // namespace
+} // namespace patina

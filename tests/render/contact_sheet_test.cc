@@ -1,0 +1,92 @@
+#include "render/contact_sheet.h"
+
+#include "base/errors.h"
+
+#include <gtest/gtest.h>
+
+namespace patina {
+namespace {
+
+std::vector<LabelledImage> grey(int count, const std::string& label) {
+    return std::vector<LabelledImage>(std::size_t(count), {Image(80, 60, 3, 0.5f), label});
+}
+
+TEST(ContactSheet, hasRoomForEveryPictureGapLabelAndTitle) {
+    ContactSheetOptions options;
+    options.columns = 3;
+    options.gap = 10;
+    options.labelHeight = 14;
+    const Image plain = makeContactSheet(grey(6, ""), options).image;
+    EXPECT_EQ(plain.width, 10 + 3 * 90);
+    EXPECT_EQ(plain.height, 10 + 2 * 70);
+    const Image labelled = makeContactSheet(grey(6, "a"), options).image;
+    EXPECT_EQ(labelled.height, 10 + 2 * (70 + 28));
+    options.title = "T";
+    EXPECT_EQ(makeContactSheet(grey(6, "a"), options).image.height, 42 + 10 + 2 * (70 + 28));
+}
+
+TEST(ContactSheet, picturesAreCopiedUnchanged) {
+    std::vector<LabelledImage> images = grey(2, "");
+    images[1].image = Image(20, 10, 3, 0.25f);
+    ContactSheetOptions options;
+    options.columns = 2;
+    options.gap = 4;
+    const Image sheet = makeContactSheet(images, options).image;
+    EXPECT_EQ(sheet.rgb(4, 4), Imath::V3f(0.5f));
+    EXPECT_EQ(sheet.rgb(83, 63), Imath::V3f(0.5f));
+    EXPECT_EQ(sheet.rgb(88 + 40, 4 + 30), Imath::V3f(0.25f)); // smaller ones stand in the middle of their cell
+    EXPECT_EQ(sheet.rgb(88 + 5, 4 + 30), options.paper);
+}
+
+TEST(ContactSheet, choosesColumnsThatFillTheSheet) {
+    const auto columns = [](int count) {
+        ContactSheetOptions options;
+        options.gap = 0;
+        return makeContactSheet(grey(count, ""), options).image.width / 80;
+    };
+    EXPECT_EQ(columns(1), 1);
+    EXPECT_EQ(columns(6), 3);
+    EXPECT_EQ(columns(8), 4);
+}
+
+TEST(ContactSheet, labelsAreDrawnUnderTheirPictureWhereThereIsAFont) {
+    ContactSheetOptions options;
+    options.columns = 2;
+    const ContactSheet sheet = makeContactSheet(grey(2, "12 years"), options);
+    const auto inkIn = [&](int left, int right) {
+        int ink = 0;
+        for (int y = 12 + 60; y < sheet.image.height; ++y)
+            for (int x = left; x < right; ++x)
+                ink += sheet.image.at(x, y)[0] < 0.5f;
+        return ink;
+    };
+    if (!sheet.hasText)
+        GTEST_SKIP() << "no font is installed; labels were left out, as promised";
+    EXPECT_GT(inkIn(12, 92), 40);
+    EXPECT_GT(inkIn(104, 184), 40);
+    EXPECT_EQ(inkIn(92, 104), 0);
+    EXPECT_EQ(inkIn(0, 12), 0);
+}
+
+TEST(ContactSheet, longLabelsShrinkToTheirCell) {
+    Image image(400, 60, 3, 1.f);
+    const std::string words = "a label that is a good deal wider than its cell";
+    if (!drawText(image, words, 200.f, 40.f, 24, Imath::V3f(0.f), TextAlign::centre, 300.f))
+        GTEST_SKIP() << "no font is installed";
+    int left = image.width, right = 0;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+            if (image.at(x, y)[0] < 0.9f)
+                left = std::min(left, x), right = std::max(right, x);
+    EXPECT_LE(right - left, 310);
+    EXPECT_NEAR(0.5 * (left + right), 200.0, 8.0);
+}
+
+TEST(ContactSheet, refusesNoPicturesAndBrokenOnes) {
+    EXPECT_THROW(makeContactSheet({}), RunError);
+    EXPECT_THROW(makeContactSheet({{Image(), "a"}}), RunError);
+    EXPECT_THROW(makeContactSheet({{Image(4, 4, 1), "a"}}), RunError);
+}
+
+} // namespace
+} // namespace patina
