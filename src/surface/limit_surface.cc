@@ -115,8 +115,8 @@ std::vector<int> ownIndices(std::size_t count) {
     return indices;
 }
 
-/// Each subdivision halves edges: enough of them that 95 of 100 are no longer than the target. The longest edges of a
-/// cage are often a few outliers that would cost a factor of four for the whole model.
+/// Each subdivision halves edges: enough of them that half are no longer than the target. The faces of a cage are often
+/// long and narrow, and one level more costs a factor of four for the whole model.
 int chooseLevel(const Mesh& mesh, double targetEdge, bool trianglesOnly) {
     std::vector<double> edges;
     edges.reserve(mesh.faceVertices.size());
@@ -128,7 +128,7 @@ int chooseLevel(const Mesh& mesh, double targetEdge, bool trianglesOnly) {
                                 .length());
         start += size;
     }
-    const std::size_t rank = std::min(edges.size() - 1, edges.size() * 95 / 100);
+    const std::size_t rank = std::min(edges.size() - 1, edges.size() / 2);
     std::nth_element(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(rank), edges.end());
     int level = 1;
     while (level < deepestLevel && edges[rank] * std::ldexp(1.0, -level) > targetEdge)

@@ -82,12 +82,8 @@ VertexGrid::VertexGrid(int columnCount, int rowCount)
       vertices(static_cast<std::size_t>(columnCount + 1) * static_cast<std::size_t>(rowCount + 1), -1) {}
 
 V2d Sock::disc(int a, int b) const {
-    double x = 2.0 * a / across - 1.0;
-    double y = 2.0 * b / along - 1.0;
-    if (spreadAcross)
-        x = spreadAcross(x);
-    if (spreadAlong)
-        y = spreadAlong(y);
+    const double x = 2.0 * a / across - 1.0;
+    const double y = 2.0 * b / along - 1.0;
     return V2d(x * std::sqrt(1.0 - 0.5 * y * y), y * std::sqrt(1.0 - 0.5 * x * x));
 }
 

@@ -32,11 +32,6 @@ struct Sock {
     int along = 8;  ///< quads of the end patches along y
     int rows = 8;   ///< quads from the lower to the upper ring
 
-    /// Where the square's corners and sides fall on the ring, for columns not spread evenly: a in [-1, 1] to [-1, 1],
-    /// increasing and odd. Empty: the identity.
-    std::function<double(double)> spreadAcross;
-    std::function<double(double)> spreadAlong;
-
     /// Position of a side vertex: `ring` is the column's point on the unit circle (x to the right of the front, y to
     /// the back, so that the front is (0, -1)), row from 0 (below) to rows.
     std::function<Imath::V3d(Imath::V2d ring, int column, int row)> side;

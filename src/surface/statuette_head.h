@@ -167,7 +167,7 @@ inline double Head::face(const V3d& p) const {
     d = carve(d, limb(p, V3d(0, 20.6, -8.4), V3d(0, 20.9, -9.6), 0.6, 0.6), 0.9);
     d = carve(d, limb(p, V3d(0, 19.6, -16.6), V3d(4, 18.5, -16.2), 1.0, 0.8), 2.0);
     // The mark between the brows.
-    return join(d, sphere(p, V3d(0, 18.6, 8.6), 1.4), 0.4);
+    return join(d, sphere(p, V3d(0, 18.1, 8.8), 1.6), 1.0);
 }
 
 inline double Head::operator()(const V3d& p) const {

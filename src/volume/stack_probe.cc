@@ -21,7 +21,8 @@ struct StackProbe::Nest {
         return phi / scale.voxelSize;
     }
 
-    // The first outward crossing of phi_k in [from, to], phi_k(from) <= 0 assumed; `to` where there is none.
+    // The first outward crossing of phi_k in [from, to], phi_k(from) <= 0 assumed; `to` where there is none. A line that
+    // meets the metal again before it is out of the layer (a crease filled to the brim) crosses there.
     // Newton with a bracket: along a line the trilinear field is a cubic within each cell and kinked between cells.
     double crossing(int k, const Imath::V3d& origin, const Imath::V3d& direction, double from, double to) const {
         double slope = 0.0;
@@ -43,8 +44,14 @@ struct StackProbe::Nest {
             }
             if (std::abs(next - s) <= 1e-12)
                 return next;
+            const double before = s;
             s = next;
             f = along(k, origin, direction, s, slope);
+            if (k > 0 && !bracketed && f < 0.0) {
+                double ignored;
+                if (along(0, origin, direction, s, ignored) < 0.0)
+                    return metalBetween(origin, direction, before, s);
+            }
             if (f == 0.0)
                 return s;
             if (f > 0.0) {
@@ -60,6 +67,49 @@ struct StackProbe::Nest {
         }
         return s;
     }
+
+    // Where phi_0 falls below 0 between `outside` and `inside`.
+    double metalBetween(const Imath::V3d& origin, const Imath::V3d& direction, double outside, double inside) const {
+        double slope;
+        for (int i = 0; i < 40; ++i) {
+            const double middle = 0.5 * (outside + inside);
+            (along(0, origin, direction, middle, slope) < 0.0 ? inside : outside) = middle;
+        }
+        return outside;
+    }
+
+    // The crossing of phi_0 that Newton steps down its gradient lead to, if they do within 3 voxels.
+    bool project(Imath::V3d& point, Imath::V3d& normal) const {
+        const Imath::V3d start = point;
+        for (int i = 0; i < 12; ++i) {
+            Imath::V3d gradient;
+            const double phi = sampler.valueAndGradient(0, sampler.locate(point), gradient) / scale.voxelSize;
+            gradient /= scale.voxelSize;
+            const double squared = gradient.length2();
+            if (squared < 1e-3 || (point - start).length2() > 9.0)
+                return false;
+            if (std::abs(phi) < 1e-3) {
+                normal = gradient / std::sqrt(squared);
+                return true;
+            }
+            const double step = std::clamp(-phi / std::sqrt(squared), -0.7, 0.7);
+            point += gradient * (step / std::sqrt(squared));
+        }
+        return false;
+    }
+
+    // Where the base crosses the line within 2 voxels of its origin; a value of 2 or more where it does not.
+    double baseCrossing(const Imath::V3d& origin, const Imath::V3d& direction) const {
+        // Inward until inside (the base lies within the voxelisation error of the point), then outward to the crossing.
+        double slope = 0.0;
+        double start = 0.0;
+        double f = along(0, origin, direction, start, slope);
+        while (f > 0.0 && start > -2.0) {
+            start -= std::clamp(f * 1.5, 0.02, 0.5);
+            f = along(0, origin, direction, start, slope);
+        }
+        return f > 0.0 ? 2.0 : crossing(0, origin, direction, start, 2.0);
+    }
 };
 
 StackProbe::StackProbe(const LayerVolume& volume)
@@ -72,30 +122,26 @@ int StackProbe::layerCount() const { return nest_->layers; }
 StackProbe::Reading StackProbe::read(const Imath::V3d& point, const Imath::V3d& normal, double* thicknessUm) const {
     const Nest& nest = *nest_;
     const VolumeScale& scale = nest.scale;
-    const Imath::V3d origin = point / scale.voxelSize;
+    Imath::V3d origin = point / scale.voxelSize;
+    Imath::V3d direction = normal;
     Reading reading;
     std::fill(thicknessUm, thicknessUm + nest.layers, 0.0);
 
-    // The base lies within the voxelisation error of the point: walk inward until inside, then outward to the crossing.
-    double slope = 0.0;
-    double start = 0.0;
-    double f = nest.along(0, origin, normal, start, slope);
-    while (f > 0.0 && start > -2.0) {
-        start -= std::clamp(f * 1.5, 0.02, 0.5);
-        f = nest.along(0, origin, normal, start, slope);
+    double below = nest.baseCrossing(origin, direction);
+    if (below >= 2.0) {
+        if (!nest.project(origin, direction))
+            return reading;
+        below = nest.baseCrossing(origin, direction);
+        if (below >= 2.0)
+            return reading;
+        reading.projected = true;
     }
-    if (f > 0.0)
-        return reading;
-    const double limit = 2.0;
-    double below = nest.crossing(0, origin, normal, start, limit);
-    if (below >= limit)
-        return reading;
     reading.found = true;
     reading.baseOffset = below * scale.voxelSize;
     const double base = below;
     const double umPerVoxel = 1.0 / scale.voxelsPerUm();
     for (int k = 1; k <= nest.layers; ++k) {
-        const double crossing = std::max(below, nest.crossing(k, origin, normal, below, base + nest.reach));
+        const double crossing = std::max(below, nest.crossing(k, origin, direction, below, base + nest.reach));
         thicknessUm[k - 1] = (crossing - below) * umPerVoxel;
         below = crossing;
     }

@@ -18,12 +18,13 @@ class StackProbe {
     StackProbe(StackProbe&&) noexcept;
 
     struct Reading {
-        bool found = false;      ///< whether the base was crossed near the point
+        bool found = false;      ///< whether there is a base near the point
+        bool projected = false;  ///< it did not cross the normal (a crease): read at the nearest crossing, along its own normal
         double baseOffset = 0.0; ///< signed distance from the point to the base crossing, scene units
         double height = 0.0;     ///< surface minus base along the normal, scene units as drawn (exaggerated)
     };
 
-    /// \param point   on the base surface, scene units; the base must cross within 2 voxels of it
+    /// \param point   on the base surface, scene units; the base must come within 3 voxels of it
     /// \param normal  outward, unit
     /// \param thicknessUm  receives each layer's thickness in real µm, bottom to top (layerCount() values, all >= 0)
     Reading read(const Imath::V3d& point, const Imath::V3d& normal, double* thicknessUm) const;

@@ -167,9 +167,8 @@ void runScript(const std::string& script, const std::string& modelName, const Op
     writeTextFile(reportFile, report.dump(2) + "\n");
     interruption.remove();
     if (stack.unreadable > 1e-3)
-        console.warning(fmt::format("on {:.2g} % of the surface no metal was found along the normal: parts thinner than a voxel, or "
-                                    "inside others; use more --voxels",
-                                    stack.unreadable * 100.0));
+        console.notice(fmt::format("{:.2g} % of the model's surface lies inside other parts of it, or is thinner than a voxel, and has no layers",
+                                   stack.unreadable * 100.0));
     console.result(fmt::format("{}: {} layers, {:.3g} µm on average, {:.3g} µm at most; content hash {}", folder.string(),
                                volume.layerCount(), stack.total.meanUm, stack.total.maxUm,
                                report["content_hash"].get<std::string>()));
