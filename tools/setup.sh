@@ -1,5 +1,8 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that building and testing need. Does nothing where all are there.
+#
+#   tools/setup.sh              what building and the default tests need
+#   tools/setup.sh --clients    also the programs that read our files in the tests labelled clients (Blender)
 set -euo pipefail
 
 packages=(
@@ -12,6 +15,13 @@ packages=(
   libgtest-dev libgmock-dev libbenchmark-dev
   fonts-dejavu-core python3
 )
+
+for option in "$@"; do
+  case "$option" in
+    --clients) packages+=(blender) ;;
+    *) echo "setup.sh: unknown option '$option' (--clients)" >&2; exit 2 ;;
+  esac
+done
 
 missing=()
 for package in "${packages[@]}"; do

@@ -6,18 +6,19 @@
 #   tools/test.sh --sanitize    the default tests under the address and undefined-behaviour sanitizers
 set -euo pipefail
 cd "$(dirname "$0")/.."
-bash tools/setup.sh
 
 preset=release
+setup=()
 exclude=(-LE 'slow|clients')
 for option in "$@"; do
   case "$option" in
-    --slow) exclude=() ;;
+    --slow) exclude=(); setup=(--clients) ;;
     --sanitize) preset=sanitize ;;
     *) echo "test.sh: unknown option '$option' (--slow, --sanitize)" >&2; exit 2 ;;
   esac
 done
 
+bash tools/setup.sh "${setup[@]}"
 cmake --preset "$preset" -DPATINA_WARNINGS_AS_ERRORS=ON
 cmake --build --preset "$preset" -j "$(nproc)"
 ctest --preset "$preset" -j "$(nproc)" "${exclude[@]}"

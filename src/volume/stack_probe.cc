@@ -49,8 +49,16 @@ struct StackProbe::Nest {
             f = along(k, origin, direction, s, slope);
             if (k > 0 && !bracketed && f < 0.0) {
                 double ignored;
-                if (along(0, origin, direction, s, ignored) < 0.0)
-                    return metalBetween(origin, direction, before, s);
+                if (along(0, origin, direction, s, ignored) < 0.0) {
+                    // In metal again: was there air on the way, in a gap narrower than the step?
+                    const double step = s - before;
+                    for (int i = 1; i < 8 && f < 0.0; ++i) {
+                        s = before + step * i / 8.0;
+                        f = along(k, origin, direction, s, slope);
+                    }
+                    if (f < 0.0)
+                        return metalBetween(origin, direction, before, before + step);
+                }
             }
             if (f == 0.0)
                 return s;
@@ -98,6 +106,14 @@ struct StackProbe::Nest {
         return false;
     }
 
+    // Whether the line leaves the base at a grazing angle. A stack read along it would be thicker by 1 / cos: more than
+    // three times where the model's smooth normal and the voxels disagree so much (a sharp crease, a thin edge).
+    bool grazes(const Imath::V3d& origin, const Imath::V3d& direction, double s) const {
+        Imath::V3d gradient;
+        sampler.valueAndGradient(0, sampler.locate(origin + direction * s), gradient);
+        return gradient.dot(direction) < 0.3 * gradient.length();
+    }
+
     // Where the base crosses the line within 2 voxels of its origin; a value of 2 or more where it does not.
     double baseCrossing(const Imath::V3d& origin, const Imath::V3d& direction) const {
         // Inward until inside (the base lies within the voxelisation error of the point), then outward to the crossing.
@@ -128,7 +144,9 @@ StackProbe::Reading StackProbe::read(const Imath::V3d& point, const Imath::V3d& 
     std::fill(thicknessUm, thicknessUm + nest.layers, 0.0);
 
     double below = nest.baseCrossing(origin, direction);
-    if (below >= 2.0) {
+    if (below >= 2.0 || nest.grazes(origin, direction, below)) {
+        if (below < 2.0)
+            origin += direction * below;
         if (!nest.project(origin, direction))
             return reading;
         below = nest.baseCrossing(origin, direction);

@@ -19,7 +19,8 @@ class StackProbe {
 
     struct Reading {
         bool found = false;      ///< whether there is a base near the point
-        bool projected = false;  ///< it did not cross the normal (a crease): read at the nearest crossing, along its own normal
+        bool projected = false;  ///< it does not cross the normal, or grazes it (a crease, a thin edge): read at the
+                                 ///< nearest crossing, along the base's own normal there
         double baseOffset = 0.0; ///< signed distance from the point to the base crossing, scene units
         double height = 0.0;     ///< surface minus base along the normal, scene units as drawn (exaggerated)
     };

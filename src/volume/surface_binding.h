@@ -6,23 +6,26 @@
 #include "volume/sheet_back.h"
 
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace patina {
 
 /// The closest point of the model for every active voxel, in the order of the base's leaves and active voxels.
-/// Voxels whose closest point lies on the back that a sheet was given belong to no point (triangle -1).
+/// Voxels whose closest point lies on the back that a sheet was given belong to no point (triangle -1). Faces buried
+/// inside other parts of the model (metal on both their sides) are no surface: no voxel belongs to them.
 class SurfaceBinding {
   public:
-    /// `closed` must be what the volume was voxelised from and `surface` what it was made of.
-    SurfaceBinding(const LayerVolume& volume, const SurfaceMesh& surface, const ClosedSurface& closed);
+    /// `closed` must be what the volume was voxelised from and `surface`, which must outlive this, what it was made of.
+    SurfaceBinding(const LayerVolume& volume, const SurfaceMesh& surface, ClosedSurface closed);
 
     /// Recomputes the closest points, needed after the band has grown.
     void rebind(const LayerVolume& volume);
 
-    /// Gives phi_0 the exact distances to the model in the whole band, signs kept: the voxeliser's own are exact next to the surface only.
+    /// Gives phi_0 the exact distances to the model in the whole band, signs kept: the voxeliser's own are exact next to
+    /// the surface only, and count buried faces. Voxels that turn out to lie deeper than the band leave it.
     /// For volumes without layers.
-    void refineBase(LayerVolume& volume) const;
+    void refineBase(LayerVolume& volume);
 
     const SurfaceMesh& surface() const { return *surface_; }
     /// Index of the first active voxel of leaf n.
@@ -38,9 +41,12 @@ class SurfaceBinding {
     bool occluded(const Imath::V3f& origin, const Imath::V3f& direction) const;
 
   private:
+    void findVisible(const LayerVolume& volume);
+
     const SurfaceMesh* surface_;
-    RayScene scene_;
-    std::size_t frontTriangles_;
+    ClosedSurface closed_;
+    std::vector<int> visible_; ///< triangles of closed_ that are surface, in order
+    std::optional<RayScene> scene_; ///< of the visible triangles
     std::vector<std::size_t> leafStart_;
     std::vector<SurfacePoint> points_;
 };
