@@ -78,8 +78,7 @@ std::string readTextFile(const fs::path& path) {
         throw RunError(path.string(), "is a folder, a file was expected");
     std::ifstream in(path, std::ios::binary);
     if (!in)
-        throw RunError(path.string(), fmt::format("cannot read the file: {}", std::strerror(errno)),
-                       "check the name");
+        throw RunError(path.string(), fmt::format("cannot read the file: {}", std::strerror(errno)), "check the name");
     std::ostringstream text;
     text << in.rdbuf();
     return text.str();

@@ -34,7 +34,8 @@ std::string SourcePlace::text() const {
 }
 
 std::string Diagnostic::text() const {
-    std::string out = fmt::format("{}: {}: {}", place.text(), severity == Severity::error ? "error" : "warning", message);
+    std::string out =
+        fmt::format("{}: {}: {}", place.text(), severity == Severity::error ? "error" : "warning", message);
     if (!sourceLine.empty()) {
         out += fmt::format("\n    {}", sourceLine);
         if (place.column > 0) {

@@ -24,7 +24,9 @@ ContentHash::~ContentHash() = default;
 ContentHash::ContentHash(ContentHash&&) noexcept = default;
 ContentHash& ContentHash::operator=(ContentHash&&) noexcept = default;
 
-void ContentHash::add(const void* data, std::size_t bytes) { XXH3_64bits_update(state_->xxh, data, bytes); }
+void ContentHash::add(const void* data, std::size_t bytes) {
+    XXH3_64bits_update(state_->xxh, data, bytes);
+}
 
 void ContentHash::add(std::string_view word) {
     const std::uint64_t size = word.size();
@@ -32,8 +34,12 @@ void ContentHash::add(std::string_view word) {
     add(word.data(), word.size());
 }
 
-std::uint64_t ContentHash::digest() const { return XXH3_64bits_digest(state_->xxh); }
+std::uint64_t ContentHash::digest() const {
+    return XXH3_64bits_digest(state_->xxh);
+}
 
-std::string ContentHash::text() const { return fmt::format("{:016x}", digest()); }
+std::string ContentHash::text() const {
+    return fmt::format("{:016x}", digest());
+}
 
 } // namespace patina

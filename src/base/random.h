@@ -25,6 +25,8 @@ class KeyedRandom {
 };
 
 /// A 32-bit word as a uniform in the open interval (0, 1).
-inline double uniformFromWord(std::uint32_t word) { return (word + 0.5) * (1.0 / 4294967296.0); }
+inline double uniformFromWord(std::uint32_t word) {
+    return (word + 0.5) * (1.0 / 4294967296.0);
+}
 
 } // namespace patina

@@ -97,7 +97,8 @@ void bakeNormals(const SurfaceMesh& surface, const TexelMap& texels, Planes& pla
                     };
                     const bool ahead = inChart(x + dx, y + dy), behind = inChart(x - dx, y - dy);
                     const double after = ahead ? height[at + dx + static_cast<std::ptrdiff_t>(dy) * size] : height[at];
-                    const double before = behind ? height[at - dx - static_cast<std::ptrdiff_t>(dy) * size] : height[at];
+                    const double before =
+                        behind ? height[at - dx - static_cast<std::ptrdiff_t>(dy) * size] : height[at];
                     const double steps = (ahead ? 1.0 : 0.0) + (behind ? 1.0 : 0.0);
                     return steps > 0.0 && length > 0.0 ? (after - before) * size / (steps * length) : 0.0;
                 };

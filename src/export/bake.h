@@ -12,23 +12,24 @@
 namespace patina {
 
 struct BakeOptions {
-    int resolution = 1024;          ///< texels along a side, per UV tile
-    int gutter = 16;                ///< texels around each chart
-    bool keepExaggeration = false;  ///< displacement as drawn in the volume instead of real
-    bool materialId = false;        ///< also bake material_id
+    int resolution = 1024;         ///< texels along a side, per UV tile
+    int gutter = 16;               ///< texels around each chart
+    bool keepExaggeration = false; ///< displacement as drawn in the volume instead of real
+    bool materialId = false;       ///< also bake material_id
 };
 
 /// Averages over the texels in charts, for reports.
 struct BakeSummary {
-    double coveredFraction = 0.0;      ///< of the texels, in charts
-    double unreadableFraction = 0.0;   ///< of those, where no base crossed the normal (left at zero)
-    float maxDisplacement = 0.f;       ///< max |h|, scene units as exported
-    Imath::V3d meanColour{0.0};        ///< linear Rec.709 of the flattened base colour, over all charts
-    double greenFraction = 0.0;        ///< texels whose base colour has a* < -4 in CIELAB
+    double coveredFraction = 0.0;    ///< of the texels, in charts
+    double unreadableFraction = 0.0; ///< of those, where no base crossed the normal (left at zero)
+    float maxDisplacement = 0.f;     ///< max |h|, scene units as exported
+    Imath::V3d meanColour{0.0};      ///< linear Rec.709 of the flattened base colour, over all charts
+    double greenFraction = 0.0;      ///< texels whose base colour has a* < -4 in CIELAB
 };
 
 struct MapSet {
-    std::vector<MapImage> maps; ///< displacement, diffuse, lobe_00_…, base_color, metallic, roughness, normal, thickness_01_…, coverage_01_…
+    std::vector<MapImage> maps; ///< displacement, diffuse, lobe_00_…, base_color, metallic, roughness, normal,
+                                ///< thickness_01_…, coverage_01_…
     BakeSummary summary;
 
     const MapImage* find(const std::string& name) const;

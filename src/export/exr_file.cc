@@ -45,8 +45,8 @@ void writeExr(const MapImage& map, const std::filesystem::path& path) {
     std::size_t offset = 0;
     for (const char* name : channelNames(map.channels)) {
         header.channels().insert(name, Imf::Channel(type));
-        frame.insert(name, Imf::Slice(type, data + offset, sampleBytes * map.channels,
-                                      sampleBytes * map.channels * map.size));
+        frame.insert(
+            name, Imf::Slice(type, data + offset, sampleBytes * map.channels, sampleBytes * map.channels * map.size));
         offset += sampleBytes;
     }
     AtomicFile file(path);

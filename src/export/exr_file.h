@@ -10,17 +10,17 @@
 
 namespace patina {
 
-/// A square map with its name and what it means. Exactly one of `floats` and `halves` holds the pixels, interleaved, row 0 at
-/// the top.
+/// A square map with its name and what it means. Exactly one of `floats` and `halves` holds the pixels, interleaved,
+/// row 0 at the top.
 struct MapImage {
     std::string name; ///< the file's stem: "displacement", "thickness_01_tarnish_1"
     int size = 0;
-    int channels = 1; ///< 1 (Y) or 3 (R, G, B)
+    int channels = 1;      ///< 1 (Y) or 3 (R, G, B)
     bool isColour = false; ///< linear Rec.709 light; otherwise data
     std::vector<float> floats;
     std::vector<Imath::half> halves;
-    std::vector<std::pair<std::string, std::string>> texts;  ///< attributes of the file
-    std::vector<std::pair<std::string, float>> numbers;      ///< attributes of the file
+    std::vector<std::pair<std::string, std::string>> texts; ///< attributes of the file
+    std::vector<std::pair<std::string, float>> numbers;     ///< attributes of the file
 };
 
 /// Writes one map atomically, ZIP compressed. \throws RunError

@@ -72,7 +72,8 @@ void makeGutter(TexelMap& map, int width) {
         std::vector<std::pair<std::uint32_t, std::uint32_t>> next;
         for (const auto& [texel, source] : front) {
             const int x = static_cast<int>(texel % size), y = static_cast<int>(texel / size);
-            static constexpr int neighbours[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}};
+            static constexpr int neighbours[8][2] = {{1, 0}, {-1, 0}, {0, 1},  {0, -1},
+                                                     {1, 1}, {1, -1}, {-1, 1}, {-1, -1}};
             for (const auto& step : neighbours) {
                 const int nx = x + step[0], ny = y + step[1];
                 if (nx < 0 || ny < 0 || nx >= size || ny >= size)
@@ -96,7 +97,8 @@ TexelMap makeTexelMap(const SurfaceMesh& surface, int size, int gutterTexels) {
     TexelMap map;
     map.size = size;
     map.points.assign(static_cast<std::size_t>(size) * size, SurfacePoint());
-    // Triangles are sorted into bands of rows once, in order, so bands can be drawn independently and the smallest index wins.
+    // Triangles are sorted into bands of rows once, in order, so bands can be drawn independently and the smallest
+    // index wins.
     constexpr int bandRows = 32;
     const int bands = (size + bandRows - 1) / bandRows;
     std::vector<std::vector<int>> inBand(bands);

@@ -19,9 +19,9 @@ struct TexelMap {
     std::size_t covered = 0; ///< texels in charts
 };
 
-/// Rasterises the UV triangles; where charts overlap the triangle with the smallest index wins. Charts are surrounded by a gutter of
-/// `gutterTexels`, each texel of which copies the nearest chart texel.
-/// \throws ModelError where the surface has no UVs, a UV is not finite or lies outside the unit square (naming the face).
+/// Rasterises the UV triangles; where charts overlap the triangle with the smallest index wins. Charts are surrounded
+/// by a gutter of `gutterTexels`, each texel of which copies the nearest chart texel. \throws ModelError where the
+/// surface has no UVs, a UV is not finite or lies outside the unit square (naming the face).
 TexelMap makeTexelMap(const SurfaceMesh& surface, int size, int gutterTexels);
 
 } // namespace patina

@@ -11,8 +11,8 @@ using LayerHardness = std::vector<double>;
 /// Removes material from the top: c = phi_n + t; phi_k = max(phi_k, c), down to the bare metal and not into it.
 ///
 /// `thicknessUm` (real µm, >= 0) times the map, clamped to 0…1, along the current surface's normal. With `hardness`
-/// (one value > 0 per layer) a soft layer goes faster than a hard one: in each voxel the budget is spent walking down the
-/// differences phi_{k-1} - phi_k. Layers that are gone everywhere are dropped.
+/// (one value > 0 per layer) a soft layer goes faster than a hard one: in each voxel the budget is spent walking down
+/// the differences phi_{k-1} - phi_k. Layers that are gone everywhere are dropped.
 OperationReport erode(Workpiece& work, double thicknessUm, const ThicknessMap* map, const LayerHardness& hardness,
                       Progress& progress);
 

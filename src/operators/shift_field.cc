@@ -93,9 +93,8 @@ ShiftField makeShiftField(Workpiece& work, double thicknessUm, const ThicknessMa
             }
             if (needDistance) {
                 const double phi = sampler.voxel(top, c);
-                field.distance[at] =
-                    top == 0 ? static_cast<float>(phi)
-                             : static_cast<float>(std::copysign((x - p).length() * voxelSize, phi));
+                field.distance[at] = top == 0 ? static_cast<float>(phi)
+                                              : static_cast<float>(std::copysign((x - p).length() * voxelSize, phi));
             }
             if (under.triangle < 0)
                 continue; // the back of a sheet takes nothing

@@ -11,7 +11,8 @@ namespace patina {
 struct ShiftField {
     std::vector<float> thickness; ///< scene units as drawn, along the surface's normal, at the voxel's closest point p
     std::vector<float> slope;     ///< |grad phi_n| at p (scene units per scene unit)
-    std::vector<float> distance;  ///< signed distance to phi_n, scene units; empty where every thickness is below a voxel
+    std::vector<float>
+        distance; ///< signed distance to phi_n, scene units; empty where every thickness is below a voxel
 };
 
 /// \param outward  whether material is added (thicknesses beyond the band make the band grow first)

@@ -9,7 +9,8 @@ namespace patina {
 
 Budget estimateBudget(const Program& program, const SurfaceMesh& surface, const VolumeScale& scale, int mapResolution) {
     Budget budget;
-    // Not every coat makes an interface (the same material on itself does not); the estimate takes the most there can be.
+    // Not every coat makes an interface (the same material on itself does not); the estimate takes the most there can
+    // be.
     double layers = 0.0;
     for (const Statement& statement : program.statements)
         if (std::holds_alternative<Coat>(statement.action))

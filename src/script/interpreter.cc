@@ -18,7 +18,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double secondsSince(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 // The volume under way and what operators need beside it.
 class Run {
@@ -79,10 +81,10 @@ class Run {
         LayerVolume volume = readVolume(action.file);
         const std::string hash = surfaceHash(surface_);
         if (!volume.provenance.modelHash.empty() && volume.provenance.modelHash != hash)
-            throw ModelError(options_.modelName,
-                             fmt::format("is not the model that '{}' was made from ({})", action.file,
-                                         volume.provenance.model),
-                             "give the same model, with the same --subdivide and voxel size");
+            throw ModelError(
+                options_.modelName,
+                fmt::format("is not the model that '{}' was made from ({})", action.file, volume.provenance.model),
+                "give the same model, with the same --subdivide and voxel size");
         adopt(std::move(volume));
     }
 
@@ -108,7 +110,8 @@ class Run {
     void perform(const Render&, StatementReport&) {}
 
     // What declareAbilities() does not list, the checker has refused before anything ran.
-    template <typename Action> void perform(const Action&, StatementReport& report) {
+    template <typename Action>
+    void perform(const Action&, StatementReport& report) {
         throw RunError(report.text, "this statement is not available in this version");
     }
 

@@ -18,9 +18,9 @@
 namespace patina {
 
 struct RunOptions {
-    VolumeScale scale;                 ///< of a `new` volume; `open` keeps the file's own
-    double longestSide = 0.0;          ///< of the whole model, scene units: growth cells are 1/512 of it
-    Imath::V3d up{0.0, 1.0, 0.0};      ///< of the model
+    VolumeScale scale;            ///< of a `new` volume; `open` keeps the file's own
+    double longestSide = 0.0;     ///< of the whole model, scene units: growth cells are 1/512 of it
+    Imath::V3d up{0.0, 1.0, 0.0}; ///< of the model
     std::uint64_t seed = 0;
     std::string programVersion;
     std::string modelName;

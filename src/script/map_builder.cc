@@ -103,7 +103,7 @@ ThicknessMapPtr MapBuilder::buildField(const Expression& e) const {
 ThicknessMapPtr MapBuilder::buildCall(const Expression& e, Progress& progress) {
     const auto number = [&](std::size_t i) { return e.children[i].number; };
     if (e.text == "texture") {
-        const std::string channel = e.children.size() < 2                               ? ""
+        const std::string channel = e.children.size() < 2                            ? ""
                                     : e.children[1].kind == Expression::Kind::number ? fmt::format("{}", int(number(1)))
                                                                                      : e.children[1].text;
         return makeTextureMap(context_.binding->surface(), e.children[0].text, channel);
@@ -160,7 +160,8 @@ std::vector<float> MapBuilder::arrivalFrom(const GrowthLattice& lattice, const I
 }
 
 ThicknessMapPtr MapBuilder::buildGrowth(const GrowthCall& call, Progress& progress) {
-    const double cell = call.cellUm ? *call.cellUm * context_.unitsPerRealUm : context_.longestSide / cellsPerLongestSide;
+    const double cell =
+        call.cellUm ? *call.cellUm * context_.unitsPerRealUm : context_.longestSide / cellsPerLongestSide;
     const GrowthLattice& cells = lattice(cell);
     progress.checkpoint();
 

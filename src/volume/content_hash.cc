@@ -9,7 +9,8 @@ namespace patina {
 namespace {
 
 // Leaves are hashed in parallel and their digests hashed in tree order, so the result does not depend on the threads.
-template <typename Tree> void addTree(ContentHash& hash, const Tree& tree) {
+template <typename Tree>
+void addTree(ContentHash& hash, const Tree& tree) {
     const auto leaves = leavesOf(tree);
     std::vector<std::uint64_t> digests(leaves.size());
     tbb::parallel_for(std::size_t(0), leaves.size(), [&](std::size_t i) {

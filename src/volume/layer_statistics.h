@@ -13,9 +13,9 @@ struct LayerStatistics {
     std::string material;
     double meanUm = 0.0;
     double maxUm = 0.0;
-    double coverage = 0.0; ///< fraction of the area where the layer is thicker than a nanometre
+    double coverage = 0.0;    ///< fraction of the area where the layer is thicker than a nanometre
     double roughnessUm = 0.0; ///< Rq: rms of the thickness about its mean
-    double volumeM3 = 0.0; ///< real: mean thickness times area
+    double volumeM3 = 0.0;    ///< real: mean thickness times area
 };
 
 struct StackStatistics {

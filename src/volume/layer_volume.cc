@@ -59,7 +59,9 @@ std::int32_t LayerVolume::materialId(const std::string& material) {
     return static_cast<std::int32_t>(palette_.size()) - 1;
 }
 
-std::string LayerVolume::interfaceGridName(int k) const { return fmt::format("interface_{:02d}_{}", k, layers_[k - 1]); }
+std::string LayerVolume::interfaceGridName(int k) const {
+    return fmt::format("interface_{:02d}_{}", k, layers_[k - 1]);
+}
 
 void LayerVolume::pushLayer(const std::string& material) {
     materialId(material);
@@ -72,8 +74,12 @@ void LayerVolume::removeLayer(int k) {
     layers_.erase(layers_.begin() + (k - 1));
 }
 
-std::size_t LayerVolume::activeVoxels() const { return grids_->base->activeVoxelCount(); }
-std::size_t LayerVolume::leafCount() const { return grids_->base->tree().leafCount(); }
+std::size_t LayerVolume::activeVoxels() const {
+    return grids_->base->activeVoxelCount();
+}
+std::size_t LayerVolume::leafCount() const {
+    return grids_->base->tree().leafCount();
+}
 
 std::size_t LayerVolume::memoryBytes() const {
     std::size_t bytes = grids_->base->memUsage();

@@ -69,11 +69,11 @@ class LayerVolume {
 
     /// Provenance: what is written as `patina_…` metadata besides what this class knows itself.
     struct Provenance {
-        std::string script;     ///< the script's text
+        std::string script; ///< the script's text
         std::string scriptName;
-        std::string model;      ///< file name of the model
-        std::string modelHash;  ///< content hash of the model's surface
-        std::string program;    ///< version of the program
+        std::string model;     ///< file name of the model
+        std::string modelHash; ///< content hash of the model's surface
+        std::string program;   ///< version of the program
         std::uint64_t seed = 0;
     };
     Provenance provenance;

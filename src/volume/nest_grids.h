@@ -30,13 +30,15 @@ struct NestGrids {
 };
 
 /// The leaves of a tree in its own order, which is the same for all trees of one topology.
-template <typename Tree> std::vector<typename Tree::LeafNodeType*> leavesOf(Tree& tree) {
+template <typename Tree>
+std::vector<typename Tree::LeafNodeType*> leavesOf(Tree& tree) {
     std::vector<typename Tree::LeafNodeType*> leaves;
     leaves.reserve(tree.leafCount());
     tree.getNodes(leaves);
     return leaves;
 }
-template <typename Tree> std::vector<const typename Tree::LeafNodeType*> leavesOf(const Tree& tree) {
+template <typename Tree>
+std::vector<const typename Tree::LeafNodeType*> leavesOf(const Tree& tree) {
     std::vector<const typename Tree::LeafNodeType*> leaves;
     leaves.reserve(tree.leafCount());
     tree.getNodes(leaves);

@@ -12,8 +12,8 @@ struct ClosedSurface {
     std::size_t frontTriangles = 0;
 };
 
-/// A closed surface as it is; an open one moved by `thickness` (scene units) against its vertex normals, turned round and
-/// joined along the open edges. Layers grow on the front only (see SurfaceBinding).
+/// A closed surface as it is; an open one moved by `thickness` (scene units) against its vertex normals, turned round
+/// and joined along the open edges. Layers grow on the front only (see SurfaceBinding).
 ClosedSurface closeSurface(const SurfaceMesh& surface, double thickness);
 
 } // namespace patina

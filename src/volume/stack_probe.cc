@@ -21,9 +21,9 @@ struct StackProbe::Nest {
         return phi / scale.voxelSize;
     }
 
-    // The first outward crossing of phi_k in [from, to], phi_k(from) <= 0 assumed; `to` where there is none. A line that
-    // meets the metal again before it is out of the layer (a crease filled to the brim) crosses there.
-    // Newton with a bracket: along a line the trilinear field is a cubic within each cell and kinked between cells.
+    // The first outward crossing of phi_k in [from, to], phi_k(from) <= 0 assumed; `to` where there is none. A line
+    // that meets the metal again before it is out of the layer (a crease filled to the brim) crosses there. Newton with
+    // a bracket: along a line the trilinear field is a cubic within each cell and kinked between cells.
     double crossing(int k, const Imath::V3d& origin, const Imath::V3d& direction, double from, double to) const {
         double slope = 0.0;
         double low = from;
@@ -129,11 +129,14 @@ struct StackProbe::Nest {
 };
 
 StackProbe::StackProbe(const LayerVolume& volume)
-    : nest_(new Nest{NestSampler(volume.grids()), volume.scale(), volume.layerCount(), volume.grids().exteriorBand + 2.0}) {}
+    : nest_(new Nest{NestSampler(volume.grids()), volume.scale(), volume.layerCount(),
+                     volume.grids().exteriorBand + 2.0}) {}
 StackProbe::~StackProbe() = default;
 StackProbe::StackProbe(StackProbe&&) noexcept = default;
 
-int StackProbe::layerCount() const { return nest_->layers; }
+int StackProbe::layerCount() const {
+    return nest_->layers;
+}
 
 StackProbe::Reading StackProbe::read(const Imath::V3d& point, const Imath::V3d& normal, double* thicknessUm) const {
     const Nest& nest = *nest_;

@@ -9,8 +9,8 @@
 
 namespace patina {
 
-/// Reads thicknesses along the normal of the base surface (DESIGN: differences of crossings along the *same* line, so that
-/// voxelisation errors larger than the patina cancel). Valid while the volume is unchanged; safe from any thread.
+/// Reads thicknesses along the normal of the base surface (DESIGN: differences of crossings along the *same* line, so
+/// that voxelisation errors larger than the patina cancel). Valid while the volume is unchanged; safe from any thread.
 class StackProbe {
   public:
     explicit StackProbe(const LayerVolume& volume);

@@ -16,7 +16,8 @@ namespace {
 // Whether there is metal on both sides of a triangle, three quarters of a voxel from its corners and its middle.
 // (Both sides are asked, so that a model turned inside out keeps its surface.)
 bool isBuried(const NestSampler& sampler, const ClosedSurface& closed, const Imath::V3i& triangle, double voxelSize) {
-    const Imath::V3d a(closed.positions[triangle[0]]), b(closed.positions[triangle[1]]), c(closed.positions[triangle[2]]);
+    const Imath::V3d a(closed.positions[triangle[0]]), b(closed.positions[triangle[1]]),
+        c(closed.positions[triangle[2]]);
     const Imath::V3d normal = (b - a).cross(c - a).normalized() * 0.75;
     for (const Imath::V3d& p : {(a + b + c) / 3.0, a, b, c})
         for (const double side : {1.0, -1.0})

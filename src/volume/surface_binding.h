@@ -22,9 +22,9 @@ class SurfaceBinding {
     /// Recomputes the closest points, needed after the band has grown.
     void rebind(const LayerVolume& volume);
 
-    /// Gives phi_0 the exact distances to the model in the whole band, signs kept: the voxeliser's own are exact next to
-    /// the surface only, and count buried faces. Voxels that turn out to lie deeper than the band leave it.
-    /// For volumes without layers.
+    /// Gives phi_0 the exact distances to the model in the whole band, signs kept: the voxeliser's own are exact next
+    /// to the surface only, and count buried faces. Voxels that turn out to lie deeper than the band leave it. For
+    /// volumes without layers.
     void refineBase(LayerVolume& volume);
 
     const SurfaceMesh& surface() const { return *surface_; }
@@ -34,8 +34,7 @@ class SurfaceBinding {
 
     /// The closest point to any position (scene units); triangle -1 on the back.
     /// `radius` (scene units) is a guess at the distance that makes the search short; a wrong one costs time only.
-    SurfacePoint closest(const Imath::V3d& position,
-                         float radius = std::numeric_limits<float>::infinity()) const;
+    SurfacePoint closest(const Imath::V3d& position, float radius = std::numeric_limits<float>::infinity()) const;
 
     /// Whether the model itself is in the way of a ray to infinity.
     bool occluded(const Imath::V3f& origin, const Imath::V3f& direction) const;
@@ -45,7 +44,7 @@ class SurfaceBinding {
 
     const SurfaceMesh* surface_;
     ClosedSurface closed_;
-    std::vector<int> visible_; ///< triangles of closed_ that are surface, in order
+    std::vector<int> visible_;      ///< triangles of closed_ that are surface, in order
     std::optional<RayScene> scene_; ///< of the visible triangles
     std::vector<std::size_t> leafStart_;
     std::vector<SurfacePoint> points_;

@@ -44,7 +44,8 @@ openvdb::GridBase::Ptr named(const Grid& grid, const std::string& name, openvdb:
     return view;
 }
 
-template <typename Value> Value required(const openvdb::MetaMap& meta, const std::string& key, const std::string& file) {
+template <typename Value>
+Value required(const openvdb::MetaMap& meta, const std::string& key, const std::string& file) {
     const auto found = meta.getMetadata<openvdb::TypedMetadata<Value>>(key);
     if (!found)
         throw RunError(file, fmt::format("has no metadata '{}'", key), "was this file written by vdb-patina run?");
@@ -68,8 +69,8 @@ typename Grid::Ptr requiredGrid(openvdb::GridPtrVec& grids, const std::string& n
     throw RunError(file, fmt::format("has no grid '{}'", name), "was this file written by vdb-patina run?");
 }
 
-// OpenVDB trusts the counts in a file, and a damaged one can make it loop or take all memory. So a seal stands behind the
-// file's last byte, where other readers do not look: eight letters and a hash of all that stands before.
+// OpenVDB trusts the counts in a file, and a damaged one can make it loop or take all memory. So a seal stands behind
+// the file's last byte, where other readers do not look: eight letters and a hash of all that stands before.
 constexpr std::string_view sealWord = "PATINA01";
 constexpr std::size_t sealBytes = 16;
 
@@ -116,7 +117,9 @@ void checkSeal(const std::filesystem::path& file) {
 
 } // namespace
 
-void initializeVolumes() { openvdb::initialize(); }
+void initializeVolumes() {
+    openvdb::initialize();
+}
 
 void writeVolume(const LayerVolume& volume, const std::filesystem::path& path) {
     const NestGrids& grids = volume.grids();

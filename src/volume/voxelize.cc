@@ -60,7 +60,8 @@ LayerVolume voxelize(const ClosedSurface& surface, const VoxelizeOptions& option
             if (*voxel < 0.f)
                 inside = true;
     if (!inside)
-        throw ModelError("model", fmt::format("nothing of it is inside at a voxel size of {:.4g} scene units", voxelSize),
+        throw ModelError("model",
+                         fmt::format("nothing of it is inside at a voxel size of {:.4g} scene units", voxelSize),
                          "use smaller voxels (--voxels or --voxel-size), or check the model's faces");
 
     auto tree = std::make_shared<openvdb::Int32Tree>(grids->base->tree(), 0, openvdb::TopologyCopy());

@@ -1,6 +1,7 @@
 #include "base/atomic_file.h"
 
 #include "base/errors.h"
+#include "support/temporary_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -13,12 +14,11 @@ namespace fs = std::filesystem;
 
 class AtomicFileTest : public testing::Test {
   protected:
-    void SetUp() override { fs::create_directories(folder_); }
-    void TearDown() override { fs::remove_all(folder_); }
     std::size_t filesLeft() const {
-        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+        return static_cast<std::size_t>(
+            std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator()));
     }
-    fs::path folder_ = fs::path(testing::TempDir()) / "patina_atomic_file_test";
+    test::TemporaryFolder folder_;
 };
 
 TEST_F(AtomicFileTest, NothingIsLeftWithoutCommit) {
@@ -61,7 +61,7 @@ TEST_F(AtomicFileTest, AFileInTheWayOfAFolderIsAnError) {
 }
 
 TEST_F(AtomicFileTest, ReadingAFolderOrNothingIsAnError) {
-    EXPECT_THROW(readTextFile(folder_), RunError);
+    EXPECT_THROW(readTextFile(folder_.path()), RunError);
     EXPECT_THROW(readTextFile(folder_ / "nothing"), RunError);
 }
 

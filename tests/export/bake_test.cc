@@ -41,10 +41,11 @@ TEST_F(BakeTest, MapsHaveTheirPromisedNames) {
     std::vector<std::string> names;
     for (const MapImage& map : maps.maps)
         names.push_back(map.name);
-    EXPECT_THAT(names, testing::ElementsAre("displacement", "diffuse", "lobe_00_copper", "lobe_01_cuprite_2",
-                                            "lobe_02_marine_patina_3", "base_color", "metallic", "roughness", "normal",
-                                            "thickness_01_cuprite_2", "coverage_01_cuprite_2",
-                                            "thickness_02_marine_patina_3", "coverage_02_marine_patina_3", "material_id"));
+    EXPECT_THAT(names,
+                testing::ElementsAre("displacement", "diffuse", "lobe_00_copper", "lobe_01_cuprite_2",
+                                     "lobe_02_marine_patina_3", "base_color", "metallic", "roughness", "normal",
+                                     "thickness_01_cuprite_2", "coverage_01_cuprite_2", "thickness_02_marine_patina_3",
+                                     "coverage_02_marine_patina_3", "material_id"));
 }
 
 TEST_F(BakeTest, ThicknessIsInMicrometresAndDisplacementInSceneUnits) {

@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/errors.h"
+#include "support/temporary_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -12,9 +13,7 @@ namespace fs = std::filesystem;
 
 class ExrFileTest : public testing::Test {
   protected:
-    void SetUp() override { fs::create_directories(folder_); }
-    void TearDown() override { fs::remove_all(folder_); }
-    fs::path folder_ = fs::path(testing::TempDir()) / "patina_exr_file_test";
+    test::TemporaryFolder folder_;
 };
 
 TEST_F(ExrFileTest, FloatsComeBackBitForBit) {

@@ -60,11 +60,12 @@ TEST(Coat, AMapIsReadAtTheClosestPointOfTheSurface) {
 }
 
 TEST(Coat, ASecondCoatOnASlopeIsMeasuredAlongItsOwnNormal) {
-    // The first coat makes a slope of 1 on a flat sheet; the second lies on it with its thickness along the slope's normal,
-    // so read along the base's normal it is longer by 1 / cos 45°.
+    // The first coat makes a slope of 1 on a flat sheet; the second lies on it with its thickness along the slope's
+    // normal, so read along the base's normal it is longer by 1 / cos 45°.
     const auto piece = test::makePiece(test::sheet(60.f, 60), test::voxelScale(), 40.0);
     auto work = piece->work();
-    const test::FunctionMap wedge([](const MapPoint& point) { return std::clamp((point.position.x - 10.0) / 30.0, 0.0, 1.0); });
+    const test::FunctionMap wedge(
+        [](const MapPoint& point) { return std::clamp((point.position.x - 10.0) / 30.0, 0.0, 1.0); });
     coat(work, "soot", 30.0, &wedge, piece->progress);
     coat(work, "dirt", 0.1, nullptr, piece->progress);
     const StackProbe probe(*piece->volume);

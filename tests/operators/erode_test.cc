@@ -47,7 +47,8 @@ TEST(Erode, StopsAtTheMetal) {
 }
 
 TEST(Erode, ByHardnessASoftLayerGoesFaster) {
-    // A budget of 0.5: the soft layer of 0.2 costs 0.2 · 0.5 = 0.1; the remaining 0.4 take 0.4 / 2 = 0.2 of the hard one.
+    // A budget of 0.5: the soft layer of 0.2 costs 0.2 · 0.5 = 0.1; the remaining 0.4 take 0.4 / 2 = 0.2 of the hard
+    // one.
     const auto piece = twoLayers(0.5, 0.2);
     auto work = piece->work();
     erode(work, 0.5, nullptr, {2.0, 0.5}, piece->progress);

@@ -3,6 +3,7 @@
 #include "operators/maps/geometry_map.h"
 #include "operators/maps/texture_map.h"
 #include "operators/maps/vertex_map.h"
+#include "support/temporary_folder.h"
 #include "support/test_surfaces.h"
 
 #include <OpenImageIO/imageio.h>
@@ -23,9 +24,6 @@ MapPoint pointOn(const SurfaceMesh& surface, int triangle, float u, float v) {
 
 class TextureMapTest : public testing::Test {
   protected:
-    void SetUp() override { fs::create_directories(folder_); }
-    void TearDown() override { fs::remove_all(folder_); }
-
     // 2 × 2 float pixels, R: 0 1 / 0 1 (rising with u), G: 1 1 / 0 0 (rising with v).
     std::string writeImage() {
         const std::string file = (folder_ / "ramp.exr").string();
@@ -36,7 +34,7 @@ class TextureMapTest : public testing::Test {
         out->close();
         return file;
     }
-    fs::path folder_ = fs::path(testing::TempDir()) / "patina_texture_map_test";
+    test::TemporaryFolder folder_;
     SurfaceMesh sheet_ = test::sheet(1.f, 1);
 };
 
@@ -44,7 +42,7 @@ TEST_F(TextureMapTest, IsReadByUvWithVUpwards) {
     const std::string file = writeImage();
     const auto red = makeTextureMap(sheet_, file, "R"), green = makeTextureMap(sheet_, file, "G");
     // Triangle 0 is (0,0), (1,0), (1,1): the barycentric point (u, v) has the UV (u + v, v).
-    EXPECT_NEAR(red->value(pointOn(sheet_, 0, 0.5f, 0.25f)), 1.0, 1e-6);  // u = 0.75: a texel's centre
+    EXPECT_NEAR(red->value(pointOn(sheet_, 0, 0.5f, 0.25f)), 1.0, 1e-6); // u = 0.75: a texel's centre
     EXPECT_NEAR(green->value(pointOn(sheet_, 0, 0.5f, 0.25f)), 0.0, 1e-6);
     EXPECT_NEAR(green->value(pointOn(sheet_, 0, 0.0f, 0.75f)), 1.0, 1e-6);
     EXPECT_NEAR(red->value(pointOn(sheet_, 0, 0.25f, 0.25f)), 0.5, 1e-6); // between the columns
@@ -93,8 +91,8 @@ TEST(GeometryMaps, SlopeFacingAndElevation) {
 }
 
 TEST(CombinedMap, CombinesAndNeverGivesWhatIsNotANumber) {
-    const auto quotient = makeCombinedMap({makeConstantMap(1.0), makeConstantMap(0.0)},
-                                          [](const double* v) { return v[0] / v[1]; });
+    const auto quotient =
+        makeCombinedMap({makeConstantMap(1.0), makeConstantMap(0.0)}, [](const double* v) { return v[0] / v[1]; });
     EXPECT_EQ(quotient->value({}), 0.0);
     const auto sum =
         makeCombinedMap({makeConstantMap(1.0), makeConstantMap(2.5)}, [](const double* v) { return v[0] + v[1]; });

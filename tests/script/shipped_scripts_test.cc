@@ -34,7 +34,9 @@ std::vector<std::string> stack(const Program& program) {
 const GrowthCall& growthOf(const Expression& map) {
     const Expression* at = &map;
     while (at->kind != Expression::Kind::growth) {
-        const auto holdsGrowth = [](const Expression& e) { return e.kind != Expression::Kind::number && e.kind != Expression::Kind::name; };
+        const auto holdsGrowth = [](const Expression& e) {
+            return e.kind != Expression::Kind::number && e.kind != Expression::Kind::name;
+        };
         at = &*std::find_if(at->children.begin(), at->children.end(), holdsGrowth);
     }
     return *at->growth;
@@ -127,7 +129,8 @@ TEST(ShippedScripts, tellOneHistoryInSixSteps) {
         }
         before = now;
     }
-    // The last frame has the materials, thicknesses and pattern ages of the paper's marine stack (a linear pattern's age is its step).
+    // The last frame has the materials, thicknesses and pattern ages of the paper's marine stack (a linear pattern's
+    // age is its step).
     const Program last = readProgramFile(scriptPath("marine_30.patina"), testContext());
     const Program paper = readProgramFile(scriptPath("marine.patina"), testContext());
     ASSERT_EQ(last.statements.size(), paper.statements.size());

@@ -19,11 +19,11 @@ namespace patina::test {
 inline SurfaceMesh sphere(float radius, int level) {
     SurfaceMesh surface;
     const float g = 0.5f * (1.f + std::sqrt(5.f));
-    const Imath::V3f corners[12] = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                                    {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-    const int faces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                              {11, 10, 2}, {10, 7, 6}, {7, 1, 8},   {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-                              {3, 8, 9},  {4, 9, 5},  {2, 4, 11},  {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+    const Imath::V3f corners[12] = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                                    {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+    const int faces[20][3] = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                              {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                              {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
     for (const auto& corner : corners)
         surface.positions.push_back(corner.normalized());
     for (const auto& face : faces)
@@ -51,7 +51,8 @@ inline SurfaceMesh sphere(float radius, int level) {
     return surface;
 }
 
-/// A flat open sheet of n × n quads in the plane z = 0, facing +z, from the origin to (size, size), UVs the unit square.
+/// A flat open sheet of n × n quads in the plane z = 0, facing +z, from the origin to (size, size), UVs the unit
+/// square.
 inline SurfaceMesh sheet(float size, int n) {
     SurfaceMesh surface;
     surface.closed = false;

@@ -28,7 +28,8 @@ TEST(StackProbe, ReadsFilmsFarBelowAVoxel) {
         const auto reading =
             probe.read(Imath::V3d(piece->surface.positions[v]), Imath::V3d(piece->surface.normals[v]), um.data());
         ASSERT_TRUE(reading.found);
-        // The sphere has facets of 1.5 voxels: its trilinear field is steeper or flatter than 1 by up to two percent there.
+        // The sphere has facets of 1.5 voxels: its trilinear field is steeper or flatter than 1 by up to two percent
+        // there.
         for (std::size_t k = 0; k < films.size(); ++k)
             ASSERT_NEAR(um[k], films[k], 0.03 * films[k]) << k;
     }
@@ -40,7 +41,8 @@ TEST(StackProbe, ALayerOfNothingReadsAsNothing) {
     const StackProbe probe(*piece->volume);
     double um = -1.0;
     for (std::size_t v = 0; v < piece->surface.positions.size(); ++v) {
-        const auto reading = probe.read(Imath::V3d(piece->surface.positions[v]), Imath::V3d(piece->surface.normals[v]), &um);
+        const auto reading =
+            probe.read(Imath::V3d(piece->surface.positions[v]), Imath::V3d(piece->surface.normals[v]), &um);
         ASSERT_TRUE(reading.found);
         ASSERT_NEAR(um, 0.0, 1e-9);
         ASSERT_NEAR(reading.height, 0.0, 1e-9);

@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/errors.h"
 #include "operators/coat.h"
+#include "support/temporary_folder.h"
 #include "support/test_surfaces.h"
 #include "volume/nest_grids.h"
 
@@ -18,8 +19,6 @@ namespace fs = std::filesystem;
 class VdbFileTest : public testing::Test {
   protected:
     void SetUp() override {
-        fs::remove_all(folder_); // of a run that was killed
-        fs::create_directories(folder_);
         piece_ = test::makePiece(test::sphere(15.f, 4), test::voxelScale());
         auto work = piece_->work();
         coat(work, "tarnish_1", 0.35, nullptr, piece_->progress);
@@ -27,13 +26,12 @@ class VdbFileTest : public testing::Test {
         piece_->volume->provenance.script = "new copper;\n";
         piece_->volume->provenance.seed = 18446744073709551615ull;
     }
-    void TearDown() override { fs::remove_all(folder_); }
 
     int filesInFolder() const {
-        return static_cast<int>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+        return static_cast<int>(std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator()));
     }
 
-    fs::path folder_ = fs::path(testing::TempDir()) / "patina_vdb_file_test";
+    test::TemporaryFolder folder_;
     std::unique_ptr<test::Piece> piece_;
 };
 
@@ -80,7 +78,8 @@ TEST_F(VdbFileTest, BrokenFilesAreErrorsThatNameTheFile) {
             EXPECT_THAT(error.place(), testing::HasSubstr("broken.vdb"));
         }
     };
-    for (const std::size_t size : {std::size_t(0), std::size_t(10), std::size_t(300), whole.size() / 2, whole.size() - 1})
+    for (const std::size_t size :
+         {std::size_t(0), std::size_t(10), std::size_t(300), whole.size() / 2, whole.size() - 1})
         expectRefused(whole.substr(0, size));
     for (const std::size_t at : {std::size_t(3), std::size_t(500), whole.size() / 2, whole.size() - 20}) {
         std::string bytes = whole;
@@ -90,7 +89,7 @@ TEST_F(VdbFileTest, BrokenFilesAreErrorsThatNameTheFile) {
     writeTextFile(folder_ / "text.vdb", "this is no volume at all, but text");
     EXPECT_THROW(readVolume(folder_ / "text.vdb"), RunError);
     EXPECT_THROW(readVolume(folder_ / "nothing.vdb"), RunError);
-    EXPECT_THROW(readVolume(folder_), RunError);
+    EXPECT_THROW(readVolume(folder_.path()), RunError);
 }
 
 TEST_F(VdbFileTest, AForeignVolumeIsRefused) {

@@ -16,7 +16,8 @@ TEST(Voxelize, ASphereIsItsDistance) {
     for (const FloatLeaf* leaf : leavesOf(std::as_const(piece->volume->grids().base->tree())))
         for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel) {
             const auto c = voxel.getCoord();
-            const double truth = std::sqrt(double(c.x()) * c.x() + double(c.y()) * c.y() + double(c.z()) * c.z()) - 30.0;
+            const double truth =
+                std::sqrt(double(c.x()) * c.x() + double(c.y()) * c.y() + double(c.z()) * c.z()) - 30.0;
             worst = std::max(worst, std::abs(*voxel - truth));
         }
     // Edges of the geodesic sphere are 1.2 voxels long; its faces lie up to e²/(6R) = 0.008 below the sphere.

@@ -37,7 +37,9 @@ class CombinedMap : public ThicknessMap {
 
 } // namespace
 
-ThicknessMapPtr makeConstantMap(double value) { return std::make_shared<ConstantMap>(value); }
+ThicknessMapPtr makeConstantMap(double value) {
+    return std::make_shared<ConstantMap>(value);
+}
 
 ThicknessMapPtr makeCombinedMap(std::vector<ThicknessMapPtr> maps, std::function<double(const double*)> function) {
     return std::make_shared<CombinedMap>(std::move(maps), std::move(function));

@@ -29,9 +29,13 @@ class ElevationMap : public ThicknessMap {
 
 } // namespace
 
-ThicknessMapPtr makeSlopeMap(const Imath::V3d& up) { return std::make_shared<FacingMap>(up); }
+ThicknessMapPtr makeSlopeMap(const Imath::V3d& up) {
+    return std::make_shared<FacingMap>(up);
+}
 
-ThicknessMapPtr makeFacingMap(const Imath::V3d& direction) { return std::make_shared<FacingMap>(direction); }
+ThicknessMapPtr makeFacingMap(const Imath::V3d& direction) {
+    return std::make_shared<FacingMap>(direction);
+}
 
 ThicknessMapPtr makeElevationMap(const Imath::V3d& up, const Imath::Box3d& bounds) {
     // The support of a box in a direction is reached at a corner.

@@ -77,7 +77,8 @@ ThicknessMapPtr makeTextureMap(const SurfaceMesh& surface, const std::filesystem
         for (const auto& [index, weight] : weights)
             pixels[i] += weight * all[i * spec.nchannels + index];
         if (!std::isfinite(pixels[i]))
-            throw RunError(file.string(), fmt::format("pixel ({}, {}) is not a number", i % spec.width, i / spec.width));
+            throw RunError(file.string(),
+                           fmt::format("pixel ({}, {}) is not a number", i % spec.width, i / spec.width));
     }
     return std::make_shared<TextureMap>(surface, spec.width, spec.height, std::move(pixels));
 }
