@@ -1,13 +1,20 @@
-// vdb-patina info FILE
+// vdb-patina info FILE [MODEL]
 
 #include "commands.h"
 #include "console.h"
+#include "model_input.h"
 
+#include "base/errors.h"
 #include "base/units.h"
+#include "script/interpreter.h"
+#include "volume/layer_statistics.h"
 #include "volume/vdb_file.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <optional>
 
 namespace patina::tool {
 
@@ -15,11 +22,33 @@ namespace {
 
 struct Arguments {
     std::string file;
+    std::string model;
     bool json = false;
 };
 
-void tell(const Arguments& arguments, Console& console) {
+// Thickness is read along the model's normals; without the model a volume tells all but that.
+std::optional<StackStatistics> statisticsOf(const LayerVolume& volume, const Arguments& arguments, const Options& options,
+                                            Console& console) {
+    std::string file = arguments.model;
+    if (file.empty()) {
+        const auto beside = std::filesystem::path(arguments.file).replace_extension(".obj");
+        if (!std::filesystem::exists(beside))
+            return std::nullopt;
+        file = beside.string();
+    }
+    const Model model = loadModel(file, options, &volume.scale(), console);
+    if (surfaceHash(model.surface) != volume.provenance.modelHash) {
+        if (!arguments.model.empty())
+            throw ModelError(file, fmt::format("is not the model that '{}' was made from", arguments.file),
+                             "give the same model, with the same --subdivide, --scheme and --atlas");
+        return std::nullopt;
+    }
+    return measureStack(volume, model.surface);
+}
+
+void tell(const Arguments& arguments, const Options& options, Console& console) {
     const LayerVolume volume = readVolume(arguments.file);
+    const auto stack = statisticsOf(volume, arguments, options, console);
     const VolumeScale& scale = volume.scale();
     const auto& from = volume.provenance;
     const double voxelUm = scale.voxelSize * scale.metresPerUnit * 1e6;
@@ -37,6 +66,14 @@ void tell(const Arguments& arguments, Console& console) {
         json["exaggeration"] = scale.exaggeration;
         json["palette"] = volume.palette();
         json["layers"] = volume.layers();
+        if (stack)
+            for (const LayerStatistics& layer : stack->layers)
+                json["thickness"].push_back({{"material", layer.material},
+                                             {"mean_um", layer.meanUm},
+                                             {"max_um", layer.maxUm},
+                                             {"coverage", layer.coverage},
+                                             {"rq_um", layer.roughnessUm},
+                                             {"volume_m3", layer.volumeM3}});
         for (const GridSummary& grid : summarizeGrids(volume))
             json["grids"].push_back({{"name", grid.name},
                                      {"type", grid.type},
@@ -51,12 +88,20 @@ void tell(const Arguments& arguments, Console& console) {
                                    from.scriptName, from.seed, from.program);
     text += fmt::format("  voxels of {} ({:.6g} scene units of {:g} m), thickness drawn {:g} times life size\n",
                         readableLength(voxelUm), scale.voxelSize, scale.metresPerUnit, scale.exaggeration);
-    text += fmt::format("  {} million voxels in the band, {} in memory\n", double(volume.activeVoxels()) * 1e-6,
+    text += fmt::format("  {:.3g} million voxels in the band, {} in memory\n", double(volume.activeVoxels()) * 1e-6,
                         readableBytes(double(volume.memoryBytes())));
     text += "  materials:";
     for (std::size_t id = 0; id < volume.palette().size(); ++id)
         text += fmt::format(" {}={}", id, volume.palette()[id]);
-    text += "\n  grids:\n";
+    if (stack) {
+        text += "\n  layers, top to bottom:\n";
+        for (auto layer = stack->layers.rbegin(); layer != stack->layers.rend(); ++layer)
+            text += fmt::format("    {:<24} {:>9.3g} µm on average, {:>8.3g} at most, on {:5.1f} % of the surface, {:.3g} mm³\n",
+                                layer->material, layer->meanUm, layer->maxUm, 100.0 * layer->coverage, layer->volumeM3 * 1e9);
+    } else {
+        text += "\n  layers' thickness: give the model behind the file\n";
+    }
+    text += "  grids:\n";
     for (const GridSummary& grid : summarizeGrids(volume))
         text += fmt::format("    {:<36} {:<6} {:<10} {:>12} voxels {:>10}\n", grid.name, grid.type, grid.gridClass,
                             grid.activeVoxels, readableBytes(double(grid.bytes)));
@@ -70,10 +115,13 @@ void addInfoCommand(CLI::App& app, Options& options, Action& action) {
     CLI::App* command = app.add_subcommand("info", "What a volume holds: grids, layers, memory, provenance");
     auto arguments = std::make_shared<Arguments>();
     command->add_option("FILE", arguments->file, "A .vdb that `run` wrote")->required();
-    command->add_flag("--json", arguments->json, "As JSON, with the script's text");
+    command->add_option("MODEL", arguments->model, "The model it was made from (default: the .obj that `run` wrote beside it)");
+    command->add_flag("--json", arguments->json, "As JSON, with the script's text")->group("Results");
     addGeneralOptions(*command, options);
-    command->callback(
-        [&action, arguments] { action = [arguments](Console& console) { tell(*arguments, console); }; });
+    addModelOptions(*command, options);
+    command->callback([&options, &action, arguments] {
+        action = [&options, arguments](Console& console) { tell(*arguments, options, console); };
+    });
 }
 
 } // namespace patina::tool

@@ -1,4 +1,4 @@
-// vdb-patina render VOLUME MODEL
+// vdb-patina render VOLUME [MODEL]
 
 #include "commands.h"
 #include "console.h"
@@ -34,7 +34,7 @@ void addRenderCommand(CLI::App& app, Options& options, Action& action) {
     CLI::App* command = app.add_subcommand("render", "A picture of a volume");
     auto arguments = std::make_shared<Arguments>();
     command->add_option("VOLUME", arguments->volume, "A .vdb that `run` wrote")->required();
-    command->add_option("MODEL", arguments->model, "The model it was made from")->required();
+    command->add_option("MODEL", arguments->model, "The model it was made from (default: the .obj that `run` wrote beside it)");
     addGeneralOptions(*command, options);
     addOutputOption(*command, options);
     addModelOptions(*command, options);

@@ -3,13 +3,13 @@
 #include "commands.h"
 #include "console.h"
 #include "data_folder.h"
+#include "interrupted_run.h"
 #include "model_input.h"
 #include "outputs.h"
 #include "report.h"
 
 #include "base/atomic_file.h"
 #include "base/errors.h"
-#include "base/hash.h"
 #include "base/units.h"
 #include "script/budget.h"
 #include "script/interpreter.h"
@@ -42,50 +42,6 @@ void checkBudget(const Budget& budget, const Options& options, Console& console)
                     "use fewer --voxels or a smaller --resolution, allow more with --budget, or --force it");
 }
 
-// An interrupted run leaves its volume and how far it got, so that --resume can go on.
-struct Interruption {
-    fs::path volumeFile, stateFile;
-    Interruption(const fs::path& folder, const std::string& name)
-        : volumeFile(folder / (name + ".interrupted.vdb")), stateFile(folder / (name + ".interrupted.json")) {}
-
-    static std::string inputHash(const Program& program, const Model& model, const RunOptions& run) {
-        ContentHash hash;
-        hash.add(program.sourceText);
-        for (const Parameter& parameter : program.parameters)
-            hash.add(&parameter.value, sizeof parameter.value);
-        hash.add(surfaceHash(model.surface));
-        hash.add(&run.scale.voxelSize, sizeof run.scale.voxelSize);
-        hash.add(&run.scale.exaggeration, sizeof run.scale.exaggeration);
-        hash.add(&run.seed, sizeof run.seed);
-        return hash.text();
-    }
-
-    void save(const RunResult& result, const std::string& inputs) const {
-        if (!result.volume)
-            return;
-        writeVolume(*result.volume, volumeFile);
-        writeTextFile(stateFile, nlohmann::json({{"inputs", inputs}, {"finished", result.finished}}).dump(2) + "\n");
-    }
-
-    std::pair<LayerVolume, std::size_t> load(const std::string& inputs) const {
-        if (!fs::exists(stateFile))
-            throw Error(ExitCode::commandLine, "--resume", fmt::format("there is no interrupted run in '{}'", stateFile.parent_path().string()),
-                        "leave --resume out");
-        const auto state = nlohmann::json::parse(readTextFile(stateFile), nullptr, false);
-        if (state.is_discarded() || !state.contains("inputs") || !state.contains("finished"))
-            throw RunError(stateFile.string(), "is damaged", "leave --resume out");
-        if (state["inputs"] != inputs)
-            throw RunError(stateFile.string(), "belongs to a run of another script, model or options", "leave --resume out");
-        return {readVolume(volumeFile), state["finished"].get<std::size_t>()};
-    }
-
-    void remove() const {
-        std::error_code ignored;
-        fs::remove(volumeFile, ignored);
-        fs::remove(stateFile, ignored);
-    }
-};
-
 CheckContext checkContext(const MaterialLibrary& materials, const Options& options) {
     CheckContext context;
     declareAbilities(context, materials);
@@ -100,18 +56,78 @@ void warnAboutClamping(const RunResult& result, Console& console) {
                                         statement.operation.clampedBelow + statement.operation.clampedAbove));
 }
 
-void runScript(const std::string& script, const std::string& modelName, const Options& options, Console& console) {
-    const MaterialLibrary materials = MaterialLibrary::load(findDataFolder());
+// Where a script goes on from a volume, that volume's scale holds, and not the command line's.
+std::optional<VolumeScale> scaleOfOpened(const Program& program) {
+    for (const Statement& statement : program.statements)
+        if (const auto* open = std::get_if<OpenFile>(&statement.action))
+            return readVolume(open->file).scale();
+    return std::nullopt;
+}
+
+struct Task {
+    Program program;
+    Model model;
+};
+
+// Everything that can be wrong with script, model and both together is told here, before anything is written.
+Task prepare(const std::string& script, const std::string& modelName, const MaterialLibrary& materials, const Options& options,
+             Console& console) {
     CheckContext context = checkContext(materials, options);
     // Once without the model: a script's errors are told before a large model is read.
     Program program = readProgramFile(script, context);
-    const Model model = loadModel(modelName, options, nullptr, console);
+    const std::optional<VolumeScale> scale = scaleOfOpened(program);
+    Model model = loadModel(modelName, options, scale ? &*scale : nullptr, console);
     context.vertexAttributes.emplace();
     for (const auto& attribute : model.surface.vertexAttributes)
         context.vertexAttributes->push_back(attribute.first);
     program = readProgramFile(script, context);
     for (const Diagnostic& warning : program.warnings)
         console.warning(warning.text());
+    return {std::move(program), std::move(model)};
+}
+
+fs::path reportFile(const Options& options, const fs::path& folder) {
+    if (options.report.empty())
+        return folder / "report.json";
+    const AtomicFile writable(options.report); // not only found out when all is done
+    return options.report;
+}
+
+// Maps, meshes, picture and report of a volume that is done.
+void writeResults(const Task& task, const RunResult& result, const nlohmann::ordered_json& earlier,
+                  const MaterialLibrary& materials, const Options& options, const fs::path& folder, Console& console) {
+    const LayerVolume& volume = *result.volume;
+    const std::string& name = task.program.name;
+    const fs::path reportTo = reportFile(options, folder);
+    std::vector<std::string> outputs;
+    {
+        const ProgressStage stage(console, "write volume");
+        writeVolume(volume, folder / (name + ".vdb"));
+        outputs.push_back(name + ".vdb");
+    }
+    const StackOptics optics = opticsOf(volume, materials, options);
+    const StackStatistics stack = measureStack(volume, task.model.surface);
+    nlohmann::ordered_json report = makeReport(task.program, task.model, options, result, stack, earlier);
+    addMapsToReport(report, writeMaps(volume, task.model, optics, options, folder, outputs, console));
+    writeMeshes(task.model, name, folder, outputs, console);
+    if (options.pictureSize > 0) {
+        writePicture(volume, task.model, optics, options, folder / "preview.png", console);
+        outputs.push_back("preview.png");
+    }
+    if (stack.unreadable > 1e-3)
+        console.notice(fmt::format("{:.2g} % of the model's surface lies inside other parts of it, or is thinner than a voxel, and has no layers",
+                                   stack.unreadable * 100.0));
+    finishReport(report, console, outputs);
+    writeTextFile(reportTo, report.dump(2) + "\n");
+    console.result(fmt::format("{}: {} layers, {:.3g} µm on average, {:.3g} µm at most; content hash {}", folder.string(),
+                               volume.layerCount(), stack.total.meanUm, stack.total.maxUm,
+                               report["content_hash"].get<std::string>()));
+}
+
+void runScript(const std::string& script, const std::string& modelName, const Options& options, Console& console) {
+    const MaterialLibrary materials = MaterialLibrary::load(findDataFolder());
+    const Task task = prepare(script, modelName, materials, options, console);
+    const auto& [program, model] = task;
 
     RunOptions run;
     run.scale = model.scale;
@@ -125,71 +141,56 @@ void runScript(const std::string& script, const std::string& modelName, const Op
     if (options.dryRun)
         return;
     const fs::path folder = outputFolder(options, program.name);
-    const Interruption interruption(folder, program.name);
-    const std::string inputs = Interruption::inputHash(program, model, run);
+    reportFile(options, folder);
+    const InterruptedRun interruption(folder, program.name);
+    const std::string inputs = hashOfInputs(program, model, run);
 
     std::optional<LayerVolume> resumed;
     std::size_t finished = 0;
+    nlohmann::ordered_json earlier = nlohmann::ordered_json::array();
     if (options.resume) {
-        auto [volume, count] = interruption.load(inputs);
-        resumed = std::move(volume);
-        finished = count;
-        console.notice(fmt::format("going on after {} finished statements", finished));
+        InterruptedRun::State state = interruption.load(inputs);
+        resumed = std::move(state.volume);
+        finished = state.finished;
+        earlier = std::move(state.statements);
+        console.notice(fmt::format("going on after {} of {} statements", finished, program.statements.size()));
     }
     RunResult result = runProgram(program, model.surface, materials, run, console, std::move(resumed), finished);
-    if (result.interrupted) {
-        interruption.save(result, inputs);
-        throw Error(ExitCode::interrupted, "run",
-                    fmt::format("interrupted after {} of {} statements; what was finished is saved", result.finished,
-                                program.statements.size()),
-                    "go on with --resume");
+    bool interrupted = result.interrupted;
+    if (!interrupted) {
+        warnAboutClamping(result, console);
+        try {
+            writeResults(task, result, earlier, materials, options, folder, console);
+        } catch (const Interrupted&) {
+            interrupted = true;
+        }
     }
-    warnAboutClamping(result, console);
-
-    const LayerVolume& volume = *result.volume;
-    std::vector<std::string> outputs;
-    {
-        const ProgressStage stage(console, "write volume");
-        writeVolume(volume, folder / (program.name + ".vdb"));
-        outputs.push_back(program.name + ".vdb");
+    if (!interrupted) {
+        interruption.remove();
+        return;
     }
-    const StackOptics optics = opticsOf(volume, materials, options);
-    const StackStatistics stack = measureStack(volume, model.surface);
-    nlohmann::ordered_json report = makeReport(program, model, options, result, stack);
-    addMapsToReport(report, writeMaps(volume, model, optics, options, folder, outputs, console));
-    writeMeshes(model, program.name, folder, outputs, console);
-    if (options.pictureSize > 0) {
-        writePicture(volume, model, optics, options, folder / "preview.png", console);
-        outputs.push_back("preview.png");
-    }
-    const fs::path reportFile = options.report.empty() ? folder / "report.json" : fs::path(options.report);
-    finishReport(report, console, outputs);
-    writeTextFile(reportFile, report.dump(2) + "\n");
-    interruption.remove();
-    if (stack.unreadable > 1e-3)
-        console.notice(fmt::format("{:.2g} % of the model's surface lies inside other parts of it, or is thinner than a voxel, and has no layers",
-                                   stack.unreadable * 100.0));
-    console.result(fmt::format("{}: {} layers, {:.3g} µm on average, {:.3g} µm at most; content hash {}", folder.string(),
-                               volume.layerCount(), stack.total.meanUm, stack.total.maxUm,
-                               report["content_hash"].get<std::string>()));
+    for (auto& statement : describeStatements(result.statements))
+        earlier.push_back(std::move(statement));
+    const std::string how = fmt::format("interrupted after {} of {} statements", result.finished, program.statements.size());
+    if (interruption.save(result, earlier, inputs))
+        throw Error(ExitCode::interrupted, "run", how + "; what was finished is saved",
+                    "the same command with --resume goes on from there");
+    throw Error(ExitCode::interrupted, "run", how + "; there was nothing to save yet");
 }
 
 void checkScript(const std::string& script, const std::string& modelName, Options options, Console& console) {
     const MaterialLibrary materials = MaterialLibrary::load(findDataFolder());
-    CheckContext context = checkContext(materials, options);
-    Program program = readProgramFile(script, context);
-    if (!modelName.empty()) {
-        const Model model = loadModel(modelName, options, nullptr, console);
-        context.vertexAttributes.emplace();
-        for (const auto& attribute : model.surface.vertexAttributes)
-            context.vertexAttributes->push_back(attribute.first);
-        program = readProgramFile(script, context);
-        options.dryRun = true;
-        checkBudget(estimateBudget(program, model.surface, model.scale, options.resolution), options, console);
+    if (modelName.empty()) {
+        const Program program = readProgramFile(script, checkContext(materials, options));
+        for (const Diagnostic& warning : program.warnings)
+            console.warning(warning.text());
+        console.result(fmt::format("{}: {} statements, no errors", program.file, program.statements.size()));
+        return;
     }
-    for (const Diagnostic& warning : program.warnings)
-        console.warning(warning.text());
+    const auto [program, model] = prepare(script, modelName, materials, options, console);
     console.result(fmt::format("{}: {} statements, no errors", program.file, program.statements.size()));
+    options.dryRun = true; // the budget is the result
+    checkBudget(estimateBudget(program, model.surface, model.scale, options.resolution), options, console);
 }
 
 struct Arguments {
@@ -207,13 +208,13 @@ void addRunCommand(CLI::App& app, Options& options, Action& action) {
     command->add_option("MODEL", arguments->model, "OBJ, PLY, STL or OFF file, or a shape of `make` (default: strip)");
     addGeneralOptions(*command, options);
     addOutputOption(*command, options);
-    command->add_option("--report", options.report, "Where the report goes (default: report.json in the folder)")->type_name("FILE");
+    command->add_option("--report", options.report, "Where the report goes (default: report.json in the folder)")->type_name("FILE")->group("Results");
     addModelOptions(*command, options);
     addVolumeOptions(*command, options);
     addMapOptions(*command, options);
     addPictureOptions(*command, options);
     addRunOptions(*command, options);
-    command->add_flag("--resume", options.resume, "Go on with an interrupted run in the same folder");
+    command->add_flag("--resume", options.resume, "Go on with an interrupted run in the same folder")->group("Run");
     command->callback([&options, &action, arguments] {
         action = [&options, arguments](Console& console) {
             runScript(arguments->script, arguments->model, options, console);

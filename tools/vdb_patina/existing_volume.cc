@@ -13,9 +13,10 @@ namespace patina::tool {
 ExistingVolume loadExisting(const std::string& volumeFile, const std::string& modelName, const Options& options,
                             Console& console) {
     LayerVolume volume = readVolume(volumeFile);
-    Model model = loadModel(modelName, options, &volume.scale(), console);
+    const std::string modelFile = modelName.empty() ? modelBeside(volumeFile) : modelName;
+    Model model = loadModel(modelFile, options, &volume.scale(), console);
     if (!volume.provenance.modelHash.empty() && surfaceHash(model.surface) != volume.provenance.modelHash)
-        throw ModelError(modelName,
+        throw ModelError(modelFile,
                          fmt::format("is not the model that '{}' was made from ('{}')", volumeFile, volume.provenance.model),
                          "give the same model, with the same --subdivide, --scheme and --atlas");
     return {std::move(volume), std::move(model), MaterialLibrary::load(findDataFolder())};

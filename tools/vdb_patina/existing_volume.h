@@ -17,7 +17,8 @@ struct ExistingVolume {
     MaterialLibrary materials;
 };
 
-/// Reads both and checks that they belong together. \throws RunError, ModelError
+/// Reads both and checks that they belong together. An empty `modelName` means the control mesh beside the volume.
+/// \throws Error, RunError, ModelError
 ExistingVolume loadExisting(const std::string& volumeFile, const std::string& modelName, const Options& options,
                             Console& console);
 

@@ -1,10 +1,10 @@
 // The vdb-patina program: reads the command line, runs one command, turns errors into words and exit codes.
 
+#include "command_line.h"
 #include "commands.h"
 #include "console.h"
 
 #include "base/errors.h"
-#include "base/names.h"
 #include "volume/vdb_file.h"
 
 #include <ImfThreading.h>
@@ -12,12 +12,14 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <memory>
 #include <new>
 #include <optional>
 #include <thread>
+#include <vector>
 
 namespace {
 
@@ -35,19 +37,6 @@ extern "C" void onInterrupt(int signal) {
 }
 
 int exitStatus(ExitCode code) { return static_cast<int>(code); }
-
-std::string suggestCommand(const CLI::App& app, int argc, char** argv) {
-    if (argc < 2 || argv[1][0] == '-')
-        return {};
-    std::vector<std::string> names;
-    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-        names.push_back(command->get_name());
-    for (const std::string& name : names)
-        if (name == argv[1])
-            return {};
-    const std::string hint = didYouMean(argv[1], names);
-    return hint.empty() ? hint : "\n" + hint;
-}
 
 int runAction(const Action& action, const Options& options) {
     std::optional<tbb::global_control> limit;
@@ -91,9 +80,10 @@ int runAction(const Action& action, const Options& options) {
 int main(int argc, char** argv) {
     CLI::App app{"Weathers metal: grows, paints, erodes and polishes thin layers on a surface, and works out their light."};
     app.name("vdb-patina");
-    app.set_version_flag("--version", "vdb-patina " PATINA_VERSION);
+    app.formatter(helpLayout()); // before the commands, which inherit it
+    app.set_help_flag("-h,--help", "Print this and end; behind a command: its own options");
+    app.set_version_flag("--version", "vdb-patina " PATINA_VERSION, "Print the version and end");
     app.require_subcommand(1);
-    app.get_formatter()->column_width(34);
 
     Options options;
     Action action;
@@ -107,8 +97,14 @@ int main(int argc, char** argv) {
     addMakeCommand(app, options, action);
     addContactSheetCommand(app, options, action);
 
+    for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+        command->group("Commands");
+
+    std::vector<std::string> words(argv + 1, argv + argc);
+    if (!words.empty() && words.front() == "help") // `help run` is `run --help`
+        std::rotate(words.begin(), words.begin() + 1, words.end()), words.back() = "--help";
     try {
-        app.parse(argc, argv);
+        app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
     } catch (const CLI::CallForHelp& help) {
         return app.exit(help);
     } catch (const CLI::CallForAllHelp& help) {
@@ -116,7 +112,7 @@ int main(int argc, char** argv) {
     } catch (const CLI::CallForVersion& version) {
         return app.exit(version);
     } catch (const CLI::ParseError& wrong) {
-        fmt::print(stderr, "error: {}{}\nvdb-patina --help tells more.\n", wrong.what(), suggestCommand(app, argc, argv));
+        fmt::print(stderr, "error: {}\n{}\n", describeParseError(wrong, app, words), whereHelpIs(app));
         return exitStatus(ExitCode::commandLine);
     }
     return runAction(action, options);

@@ -1,6 +1,7 @@
 #include "model_input.h"
 
 #include "base/errors.h"
+#include "base/names.h"
 #include "base/units.h"
 #include "surface/atlas.h"
 #include "surface/limit_surface.h"
@@ -10,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 namespace patina::tool {
@@ -31,9 +33,45 @@ double longest(const Imath::Box3f& box) {
     return std::max({size.x, size.y, size.z});
 }
 
+std::string shapeHint(const std::string& name, const std::vector<std::string>& shapes) {
+    const std::string hint = didYouMean(name, shapes);
+    return hint.empty() ? "shapes are " + fmt::format("{}", fmt::join(shapes, ", ")) : hint;
+}
+
+// The maps are one tile: what does not fit is told before a long run and not after it. UVs that stick out by a texel or
+// two, as packers leave them, are moved to the border; NAME.obj has them so.
+void fitUvs(Mesh& mesh, const std::string& name, Console& console) {
+    constexpr float tolerance = 0.005f;
+    std::size_t corner = 0;
+    for (std::size_t face = 0; face < mesh.faceCount(); ++face)
+        for (int i = 0; i < mesh.faceSizes[face]; ++i, ++corner) {
+            const Imath::V2f uv = mesh.uvs[mesh.faceUvs[corner]];
+            if (!(uv.x >= -tolerance && uv.x <= 1.f + tolerance && uv.y >= -tolerance && uv.y <= 1.f + tolerance))
+                throw ModelError(name, fmt::format("face {}: its UV ({:.5g}, {:.5g}) lies outside the unit square", face + 1, uv.x, uv.y),
+                                 "move the UVs into one tile, or replace them with --atlas");
+        }
+    float furthest = 0.f;
+    for (Imath::V2f& uv : mesh.uvs) {
+        const Imath::V2f inside(std::clamp(uv.x, 0.f, 1.f), std::clamp(uv.y, 0.f, 1.f));
+        furthest = std::max({furthest, std::abs(uv.x - inside.x), std::abs(uv.y - inside.y)});
+        uv = inside;
+    }
+    if (furthest > 1e-4f)
+        console.warning(fmt::format("UVs reach {:.2g} beyond the unit square and were moved to its border", furthest));
+}
+
 } // namespace
 
 Imath::V3d upVector(UpAxis up) { return up == UpAxis::y ? Imath::V3d(0, 1, 0) : Imath::V3d(0, 0, 1); }
+
+std::string modelBeside(const std::string& volumeFile) {
+    const auto file = std::filesystem::path(volumeFile).replace_extension(".obj");
+    std::error_code ignored;
+    if (std::filesystem::exists(volumeFile, ignored) && !std::filesystem::exists(file, ignored))
+        throw Error(ExitCode::commandLine, volumeFile, fmt::format("there is no '{}' beside it", file.filename().string()),
+                    "give the model that it was made from, behind the volume");
+    return file.string();
+}
 
 Mesh makeUprightShape(const std::string& name) {
     Mesh mesh = makeShape(name);
@@ -49,14 +87,18 @@ Model loadModel(const std::string& name, const Options& options, const VolumeSca
     std::error_code ignored;
     if (!std::filesystem::exists(name, ignored) && std::find(shapes.begin(), shapes.end(), name) != shapes.end())
         model.mesh = makeUprightShape(name);
-    else
+    else if (std::filesystem::exists(name, ignored) || std::filesystem::path(name).has_extension())
         model.mesh = readMesh(name);
+    else
+        throw ModelError(name, "is neither a file nor a shape that the program can make", shapeHint(name, shapes));
     model.name = model.mesh.name;
     if (options.atlas || !model.mesh.hasUvs()) {
         if (!options.atlas)
             console.notice("the model has no UVs: each face gets a tile of its own");
         makeFaceAtlas(model.mesh, options.resolution);
     }
+
+    fitUvs(model.mesh, name, console);
 
     LimitSurfaceOptions limit;
     limit.scheme = schemeNamed(options.scheme);

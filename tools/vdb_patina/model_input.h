@@ -27,6 +27,10 @@ Model loadModel(const std::string& name, const Options& options, const VolumeSca
 
 Imath::V3d upVector(UpAxis up);
 
+/// The control mesh that `run` writes beside a volume: the model of commands that are given none.
+/// \throws Error (command line) where there is none
+std::string modelBeside(const std::string& volumeFile);
+
 /// A shape of `make`, turned so that y is up, as OBJ files are.
 Mesh makeUprightShape(const std::string& name);
 

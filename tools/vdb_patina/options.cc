@@ -1,11 +1,23 @@
 #include "options.h"
 
+#include "command_line.h"
+
 #include "base/errors.h"
 #include "base/units.h"
 
 #include <fmt/format.h>
 
 namespace patina::tool {
+
+namespace {
+
+const std::map<std::string, ProgressStyle> progressStyles = {{"auto", ProgressStyle::automatic},
+                                                             {"bar", ProgressStyle::bar},
+                                                             {"plain", ProgressStyle::plain},
+                                                             {"json", ProgressStyle::json},
+                                                             {"none", ProgressStyle::none}};
+
+} // namespace
 
 double Options::metresPerUnit() const { return *micrometresPerUnit(unit) * 1e-6; }
 
@@ -22,73 +34,119 @@ std::map<std::string, std::string> Options::settingMap() const {
 }
 
 void addGeneralOptions(CLI::App& app, Options& options) {
-    const std::map<std::string, ProgressStyle> styles = {{"auto", ProgressStyle::automatic},
-                                                         {"bar", ProgressStyle::bar},
-                                                         {"plain", ProgressStyle::plain},
-                                                         {"json", ProgressStyle::json},
-                                                         {"none", ProgressStyle::none}};
+    const std::string group = "General";
+    // Help stands with the others.
+    app.set_help_flag("-h,--help", "Print this and end")->group(group);
     app.add_option("--threads", options.threads, "Threads to use; the result does not depend on them (default: all)")
-        ->check(CLI::Range(1, 1024));
-    app.add_option("--progress", options.progress, "auto, bar, plain, json or none; goes to stderr")
-        ->transform(CLI::CheckedTransformer(styles, CLI::ignore_case))
-        ->type_name("STYLE");
-    auto* verbose = app.add_flag("-v,--verbose", options.verbose, "Say more");
-    app.add_flag("-q,--quiet", options.quiet, "Say only what went wrong")->excludes(verbose);
+        ->check(wholeNumberWithin(1, 1024))
+        ->type_name("T")
+        ->group(group);
+    app.add_option_function<std::string>(
+           "--progress", [&options](const std::string& word) { options.progress = progressStyles.at(word); },
+           "How to show it, on stderr: auto, bar, plain, json or none (default: a bar on a terminal)")
+        ->check(oneOf({"auto", "bar", "plain", "json", "none"}))
+        ->type_name("STYLE")
+        ->group(group);
+    auto* verbose = app.add_flag("-v,--verbose", options.verbose, "Say more")->group(group);
+    app.add_flag("-q,--quiet", options.quiet, "Say only what went wrong")->excludes(verbose)->group(group);
 }
 
 void addOutputOption(CLI::App& app, Options& options) {
-    app.add_option("-o,--output", options.output, "Folder for the results (made if needed)")->type_name("DIR");
+    app.add_option("-o,--output", options.output, "Folder for the results, made if needed (default: named after the result)")
+        ->type_name("DIR")
+        ->group("Results");
 }
 
 void addModelOptions(CLI::App& app, Options& options) {
-    const std::map<std::string, UpAxis> axes = {{"y", UpAxis::y}, {"z", UpAxis::z}};
+    const std::string group = "Model";
     app.add_option("--unit", options.unit, "Unit of the model's coordinates: m, cm, mm or um (default m)")
-        ->check(CLI::IsMember({"m", "cm", "mm", "um"}));
-    app.add_option("--up", options.up, "The model's up axis: y or z (default y)")
-        ->transform(CLI::CheckedTransformer(axes, CLI::ignore_case))
-        ->type_name("AXIS");
-    app.add_option("--scheme", options.scheme, "Subdivision: automatic, none, catmull-clark or loop")
-        ->check(CLI::IsMember({"automatic", "none", "catmull-clark", "loop"}));
-    app.add_option("--subdivide", options.subdivide, "Level of subdivision (default: to about a voxel)")
-        ->check(CLI::Range(0, 8));
-    app.add_flag("--atlas", options.atlas, "Replace the model's UVs by a tile for each face");
+        ->check(oneOf({"m", "cm", "mm", "um"}))
+        ->type_name("UNIT")
+        ->group(group);
+    app.add_option_function<std::string>(
+           "--up", [&options](const std::string& word) { options.up = word == "z" ? UpAxis::z : UpAxis::y; },
+           "The model's up axis: y or z (default y)")
+        ->check(oneOf({"y", "z"}))
+        ->type_name("AXIS")
+        ->group(group);
+    app.add_option("--scheme", options.scheme, "Subdivision: automatic, none, catmull-clark or loop (default automatic)")
+        ->check(oneOf({"automatic", "none", "catmull-clark", "loop"}))
+        ->type_name("NAME")
+        ->group(group);
+    app.add_option("--subdivide", options.subdivide, "Level of subdivision (default: until edges are about a voxel)")
+        ->check(wholeNumberWithin(0, 7))
+        ->type_name("L")
+        ->group(group);
+    app.add_flag("--atlas", options.atlas, "Replace the model's UVs by a tile for each face")->group(group);
 }
 
 void addVolumeOptions(CLI::App& app, Options& options) {
-    auto* voxels =
-        app.add_option("--voxels", options.voxels, "Voxels along the model's longest side (default 256)")->check(CLI::Range(8, 65536));
+    const std::string group = "Volume";
+    auto* voxels = app.add_option("--voxels", options.voxels, "Voxels along the model's longest side (default 256)")
+                       ->check(wholeNumberWithin(8, 65536))
+                       ->type_name("N")
+                       ->group(group);
     app.add_option("--voxel-size", options.voxelSize, "Size of a voxel in scene units, instead of --voxels")
-        ->check(CLI::PositiveNumber)
-        ->excludes(voxels);
+        ->check(numberAboveZero())
+        ->excludes(voxels)
+        ->type_name("X")
+        ->group(group);
     app.add_option("--exaggeration", options.exaggeration, "Draw thickness so many times life size (default 1)")
-        ->check(CLI::PositiveNumber);
-    app.add_option("--seed", options.seed, "Seed of all randomness (default: the script's, or 0)");
+        ->check(numberAboveZero())
+        ->type_name("E")
+        ->group(group);
+    app.add_option("--seed", options.seed, "Seed of all randomness (default: the script's, or 0)")
+        ->check(wholeNumberWithin(0, 9007199254740992))
+        ->type_name("S")
+        ->group(group);
 }
 
 void addMapOptions(CLI::App& app, Options& options) {
-    app.add_option("--resolution", options.resolution, "Texels along a side of the maps (default 1024)")->check(CLI::Range(16, 32768));
-    app.add_flag("--keep-exaggeration", options.keepExaggeration, "Displacement as drawn in the volume, not real");
-    app.add_flag("--material-id", options.materialId, "Also bake material_id.exr");
+    const std::string group = "Maps";
+    app.add_option("--resolution", options.resolution, "Texels along a side of the maps (default 1024)")
+        ->check(wholeNumberWithin(16, 32768))
+        ->type_name("P")
+        ->group(group);
+    app.add_flag("--keep-exaggeration", options.keepExaggeration, "Displacement as drawn in the volume, not real")->group(group);
+    app.add_flag("--material-id", options.materialId, "Also bake material_id.exr")->group(group);
     app.add_option("--optics", options.optics, "conserving (default) or paper (its section 4.3 to the letter)")
-        ->check(CLI::IsMember({"conserving", "paper"}));
+        ->check(oneOf({"conserving", "paper"}))
+        ->type_name("MODEL")
+        ->group(group);
 }
 
 void addPictureOptions(CLI::App& app, Options& options) {
-    app.add_option("--picture", options.pictureSize, "Pixels along the longer side of the picture; 0: none (default 640)")
-        ->check(CLI::Range(0, 16384));
-    app.add_option("--samples", options.samples, "Paths per pixel (default 32)")->check(CLI::Range(1, 65536));
+    const std::string group = "Picture";
+    app.add_option("--picture", options.pictureSize, "Pixels along its longer side; 0: no picture (default 640)")
+        ->check(wholeNumberWithin(0, 16384))
+        ->type_name("P")
+        ->group(group);
+    app.add_option("--samples", options.samples, "Paths per pixel (default 32)")
+        ->check(wholeNumberWithin(1, 65536))
+        ->type_name("N")
+        ->group(group);
     app.add_option("--azimuth", options.azimuth, "Where the camera stands, degrees around the model from its front")
-        ->check(CLI::Range(-360.0, 360.0));
-    app.add_option("--elevation", options.elevation, "… and above the horizon, degrees")->check(CLI::Range(-89.0, 89.0));
+        ->check(numberWithin(-360.0, 360.0))
+        ->type_name("DEG")
+        ->group(group);
+    app.add_option("--elevation", options.elevation, "… and above the horizon, degrees")
+        ->check(numberWithin(-89.0, 89.0))
+        ->type_name("DEG")
+        ->group(group);
 }
 
 void addRunOptions(CLI::App& app, Options& options) {
-    app.add_option("--set", options.settings, "Value of a script's parameter")->type_name("NAME=VALUE")->allow_extra_args(false);
-    app.add_option("--budget", options.budgetGiB, "Memory the run may take (default: four fifths of the machine's)")
-        ->check(CLI::PositiveNumber)
-        ->type_name("GIB");
-    app.add_flag("--dry-run", options.dryRun, "Check everything and print the budget, run nothing");
-    app.add_flag("--force", options.force, "Start even where the budget says that it does not fit");
+    const std::string group = "Run";
+    app.add_option("--set", options.settings, "Value of a script's parameter; may be given several times")
+        ->type_name("NAME=VALUE")
+        ->allow_extra_args(false)
+        ->group(group);
+    app.add_option("--budget", options.budgetGiB, "Memory the run may take, GiB (default: four fifths of the machine's)")
+        ->check(numberAboveZero())
+        ->type_name("GIB")
+        ->group(group);
+    app.add_flag("--dry-run", options.dryRun, "Check everything and print the budget, run nothing")->group(group);
+    app.add_flag("--force", options.force, "Start even where the budget says that it does not fit")->group(group);
 }
 
 } // namespace patina::tool

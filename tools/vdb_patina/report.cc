@@ -40,8 +40,15 @@ Json describe(const StatementReport& statement) {
 
 } // namespace
 
+Json describeStatements(const std::vector<StatementReport>& statements) {
+    Json json = Json::array();
+    for (const StatementReport& statement : statements)
+        json.push_back(describe(statement));
+    return json;
+}
+
 Json makeReport(const Program& program, const Model& model, const Options& options, const RunResult& run,
-                const StackStatistics& stack) {
+                const StackStatistics& stack, const Json& earlier) {
     const LayerVolume& volume = *run.volume;
     Json report;
     report["schema"] = 1;
@@ -65,9 +72,11 @@ Json makeReport(const Program& program, const Model& model, const Options& optio
                         {"leaves", volume.leafCount()},
                         {"bytes", volume.memoryBytes()},
                         {"palette", volume.palette()}};
-    report["statements"] = Json::array();
+    report["statements"] = earlier;
     for (const StatementReport& statement : run.statements)
         report["statements"].push_back(describe(statement));
+    if (!earlier.empty())
+        report["resumed_after_statements"] = earlier.size();
     report["layers"] = Json::array();
     for (const LayerStatistics& layer : stack.layers)
         report["layers"].push_back(describe(layer));

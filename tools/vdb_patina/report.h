@@ -15,8 +15,13 @@
 namespace patina::tool {
 
 /// All but the stages' times, the peak memory and the outputs, which finishReport() adds.
+/// \param earlier  statements that a resumed run had finished before, as describeStatements() gave them
 nlohmann::ordered_json makeReport(const Program& program, const Model& model, const Options& options,
-                                  const RunResult& run, const StackStatistics& stack);
+                                  const RunResult& run, const StackStatistics& stack,
+                                  const nlohmann::ordered_json& earlier = nlohmann::ordered_json::array());
+
+/// The report's array of statements.
+nlohmann::ordered_json describeStatements(const std::vector<StatementReport>& statements);
 
 void addMapsToReport(nlohmann::ordered_json& report, const BakeSummary& summary);
 void finishReport(nlohmann::ordered_json& report, const Console& console, const std::vector<std::string>& outputs);

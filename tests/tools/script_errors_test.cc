@@ -1,0 +1,110 @@
+// A wrong script ends with exit code 3 before anything runs, every error with its place, line, caret and remedy.
+
+#include "program.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace patina::test {
+
+namespace {
+
+using testing::HasSubstr;
+
+TEST(ScriptErrors, AllThreeAreToldAtOnceWithLineAndCaret) {
+    const TemporaryFolder folder;
+    folder.file("wrong.patina", "new copper\n"
+                                "coat cuprit_2 1.2\n"
+                                "coat tarnish_1 0.3 texture(BX.linear_5.40)\n"
+                                "  coat soot -2\n");
+    const Outcome outcome = vdbPatina(small({"run", "wrong.patina", "strip", "-o", "out"}), folder.path());
+    EXPECT_EQ(outcome.exitCode, 3);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_THAT(outcome.err, HasSubstr("wrong.patina:2:6: error: unknown material 'cuprit_2'\n"
+                                       "    coat cuprit_2 1.2\n"
+                                       "         ^\n"
+                                       "    did you mean 'cuprite_2'?"));
+    EXPECT_THAT(outcome.err, HasSubstr("wrong.patina:3:28: error: unknown growth model 'BX'\n"
+                                       "    coat tarnish_1 0.3 texture(BX.linear_5.40)\n"
+                                       "                               ^\n"));
+    EXPECT_THAT(outcome.err, HasSubstr("wrong.patina:4:13: error: "));
+    EXPECT_THAT(outcome.err, HasSubstr("      coat soot -2\n                ^\n"));
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+}
+
+struct WrongScript {
+    const char* text;
+    const char* says;
+};
+
+TEST(ScriptErrors, NameThePlaceAndEndWith3) {
+    const TemporaryFolder folder;
+    const WrongScript scripts[] = {
+        {"", "error: "},
+        {"coat soot 1\n", ":1:1: error: "},
+        {"new coper\n", "did you mean 'copper'?"},
+        {"new copper\ncoat soot\n", ":2:"},
+        {"new copper\nfrobnicate 3\n", ":2:1: error: "},
+        {"new copper\ncoat soot 1 texture(BD.linar_5.40)\n", "did you mean 'linear'?"},
+        {"new copper\ncoat soot 1 texture(BD.linear_50.40)\n", ":2:"},
+        {"new copper\ncoat soot 1 texture(\"missing.png\")\n", ":2:21: error: "},
+        {"open \"missing.vdb\"\ncoat soot 1\n", ":1:6: error: "},
+        {"new copper\ncoat soot 1 vertices(wear)\n", ":2:"},
+        {"new copper\ncoat soot (1\n", ":2:11: error: "},
+        {"new copper\nfill dirt 1.5\n", ":2:1: error: 'fill' is not there yet in this version"},
+        {"new copper\npolish 2\n", ":2:1: error: 'polish' is not there yet in this version"},
+        {"new copper\noffset wax 0.2mm\n", ":2:1: error: 'offset' is not there yet in this version"},
+        {"new copper\ncoat soot 1 wetness\n", "not there yet in this version"},
+    };
+    for (const WrongScript& script : scripts) {
+        SCOPED_TRACE(script.text);
+        folder.file("wrong.patina", script.text);
+        const Outcome outcome = vdbPatina(small({"run", "wrong.patina", "strip", "-o", "out"}), folder.path());
+        EXPECT_EQ(outcome.exitCode, 3);
+        EXPECT_EQ(outcome.out, "");
+        EXPECT_THAT(outcome.err, HasSubstr("wrong.patina"));
+        EXPECT_THAT(outcome.err, HasSubstr(script.says));
+        EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+    }
+}
+
+TEST(ScriptErrors, UnknownParameterIsOne) {
+    const TemporaryFolder folder;
+    folder.file("a.patina", "param years = 3\nnew copper\ncoat soot years\n");
+    const Outcome wrong = vdbPatina({"check", "a.patina", "--set", "yeers=4"}, folder.path());
+    EXPECT_EQ(wrong.exitCode, 3);
+    EXPECT_THAT(wrong.err, HasSubstr("the script has no parameter 'yeers'"));
+    EXPECT_THAT(wrong.err, HasSubstr("did you mean 'years'?"));
+    EXPECT_EQ(vdbPatina({"check", "a.patina", "--set", "years=4"}, folder.path()).exitCode, 0);
+}
+
+TEST(ScriptErrors, ScriptThatCannotBeReadEndsWith1) {
+    const TemporaryFolder folder;
+    const Outcome missing = vdbPatina({"run", "nosuch.patina"}, folder.path());
+    EXPECT_EQ(missing.exitCode, 1);
+    EXPECT_THAT(missing.err, HasSubstr("error: nosuch.patina: cannot read the file"));
+    const Outcome directory = vdbPatina({"run", "."}, folder.path());
+    EXPECT_EQ(directory.exitCode, 1);
+    EXPECT_THAT(directory.err, HasSubstr("is a folder"));
+    // A picture or a mesh by mistake is no script, and says so rather than hang or crash.
+    folder.file("binary.patina", std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16));
+    EXPECT_EQ(vdbPatina({"run", "binary.patina"}, folder.path()).exitCode, 3);
+}
+
+TEST(ScriptErrors, EveryShippedScriptIsFreeOfThem) {
+    const TemporaryFolder folder;
+    int count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(PATINA_SOURCE_DIR "/data/scripts")) {
+        if (entry.path().extension() != ".patina")
+            continue;
+        ++count;
+        const Outcome outcome = vdbPatina({"check", entry.path().string()}, folder.path());
+        EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+        EXPECT_THAT(outcome.out, HasSubstr("statements, no errors"));
+    }
+    EXPECT_GE(count, 3);
+}
+
+} // namespace
+
+} // namespace patina::test

@@ -1,0 +1,228 @@
+// The commands beside `run`: info, check, bake, render, probe, materials, make, contact-sheet.
+
+#include "program.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <sstream>
+
+namespace patina::test {
+
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+// One sphere with 0.35 µm of tarnish and 1 µm of soot on it.
+class VolumeCommands : public testing::Test {
+  protected:
+    void SetUp() override {
+        folder.file("ball.patina", "new copper\ncoat tarnish_1 0.35\ncoat soot 1\n");
+        const Outcome outcome = vdbPatina(small({"run", "ball.patina", "sphere"}), folder.path());
+        ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+        hash = contentHashIn(outcome.out);
+    }
+
+    Outcome run(const Arguments& words, const std::string& input = {}) const { return vdbPatina(words, folder.path(), input); }
+
+    TemporaryFolder folder;
+    std::string hash;
+};
+
+TEST_F(VolumeCommands, InfoTellsGridsLayersThicknessAndProvenance) {
+    const Outcome text = run({"info", "ball/ball.vdb"});
+    ASSERT_EQ(text.exitCode, 0) << text.err;
+    for (const char* part : {"model 'sphere'", "script 'ball'", "1=copper", "2=tarnish_1", "3=soot", "base ", "interface_01_tarnish_1",
+                             "interface_02_soot", "material ", "µm on average"})
+        EXPECT_THAT(text.out, HasSubstr(part));
+    EXPECT_EQ(contentHashIn(text.out), hash);
+
+    const Outcome outcome = run({"info", "--json", "ball/ball.vdb"});
+    const json info = json::parse(outcome.out, nullptr, false);
+    ASSERT_TRUE(info.is_object()) << outcome.out;
+    EXPECT_EQ(info["content_hash"], hash);
+    EXPECT_EQ(info["layers"], json({"tarnish_1", "soot"}));
+    EXPECT_EQ(info["palette"], json({"air", "copper", "tarnish_1", "soot"}));
+    EXPECT_EQ(info["script"], "new copper\ncoat tarnish_1 0.35\ncoat soot 1\n");
+    EXPECT_NEAR(info["thickness"][0]["mean_um"].get<double>(), 0.35, 0.0035);
+    EXPECT_NEAR(info["thickness"][1]["mean_um"].get<double>(), 1.0, 0.01);
+
+    // Far from its model it still tells the rest.
+    std::filesystem::copy(folder.path() / "ball/ball.vdb", folder.path() / "alone.vdb");
+    const Outcome alone = run({"info", "alone.vdb"});
+    EXPECT_EQ(alone.exitCode, 0);
+    EXPECT_THAT(alone.out, HasSubstr("give the model behind the file"));
+    EXPECT_THAT(run({"info", "alone.vdb", "sphere"}).out, HasSubstr("µm on average"));
+    EXPECT_EQ(run({"info", "alone.vdb", "strip"}).exitCode, 4);
+}
+
+TEST_F(VolumeCommands, CheckTellsTheBudgetOfAModel) {
+    const Outcome alone = run({"check", "ball.patina"});
+    EXPECT_EQ(alone.exitCode, 0);
+    EXPECT_EQ(alone.out, "ball.patina: 3 statements, no errors\n");
+    const Outcome outcome = run({"check", "ball.patina", "sphere", "--voxels", "64"});
+    EXPECT_EQ(outcome.exitCode, 0);
+    EXPECT_THAT(outcome.out, HasSubstr("ball.patina: 3 statements, no errors\nbudget: "));
+    EXPECT_EQ(run({"check", "ball.patina", "sphere", "--budget", "0.001"}).exitCode, 5);
+    EXPECT_EQ(filesIn(folder.path()), (std::set<std::string>{"ball", "ball.patina"}));
+}
+
+TEST_F(VolumeCommands, BakeGivesTheMapsOfTheRun) {
+    const Outcome outcome = run({"bake", "ball/ball.vdb", "sphere", "-o", "baked", "--resolution", "64"});
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    std::set<std::string> expected = filesIn(folder.path() / "ball");
+    for (const char* notBaked : {"ball.vdb", "preview.png", "report.json"})
+        expected.erase(notBaked);
+    EXPECT_EQ(filesIn(folder.path() / "baked"), expected);
+    for (const char* map : {"displacement.exr", "thickness_02_soot.exr", "diffuse.exr", "normal.exr"})
+        EXPECT_EQ(readFile(folder.path() / "baked" / map), readFile(folder.path() / "ball" / map)) << map;
+
+    const Outcome other = run({"bake", "ball/ball.vdb", "strip", "-o", "other", "--resolution", "64"});
+    EXPECT_EQ(other.exitCode, 4);
+    EXPECT_THAT(other.err, HasSubstr("strip: is not the model that 'ball/ball.vdb' was made from ('sphere')"));
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "other"));
+}
+
+TEST_F(VolumeCommands, RenderMakesAPictureWithOrWithoutTheModel) {
+    for (const Arguments& model : {Arguments{}, Arguments{"sphere"}}) {
+        Arguments words{"render", "ball/ball.vdb"};
+        words.insert(words.end(), model.begin(), model.end());
+        for (const char* word : {"-o", "pictures", "--picture", "32", "--samples", "1"})
+            words.emplace_back(word);
+        const Outcome outcome = run(words);
+        ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+        EXPECT_EQ(outcome.out, "pictures/ball.png\n");
+        EXPECT_EQ(readFile(folder.path() / "pictures/ball.png").substr(1, 3), "PNG");
+        std::filesystem::remove(folder.path() / "pictures/ball.png");
+    }
+    EXPECT_EQ(run({"render", "ball/ball.vdb", "--picture", "0"}).exitCode, 2);
+}
+
+TEST_F(VolumeCommands, ProbeReadsTheStackAtPoints) {
+    const Outcome text = run({"probe", "ball/ball.vdb", "--at", "0.05,0.05,0", "--at", "-0.05,0.05,0"});
+    ASSERT_EQ(text.exitCode, 0) << text.err;
+    for (const char* part : {"soot ", "tarnish_1 ", "copper ", "bulk", "L*a*b*", "roughness"})
+        EXPECT_THAT(text.out, HasSubstr(part));
+    EXPECT_LT(text.out.find("soot"), text.out.find("tarnish_1")) << "the top layer stands on top";
+
+    const std::string points = "x,y,z\n# the sphere stands on y = 0\n0.05,0.05,0\n-0.05 0.05 0\n\n0 0.1 0\n";
+    folder.file("points.csv", points);
+    const Outcome csv = run({"probe", "ball/ball.vdb", "sphere", "--csv", "--points", "points.csv"});
+    ASSERT_EQ(csv.exitCode, 0) << csv.err;
+    std::istringstream lines(csv.out);
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_EQ(line, "x,y,z,L,a,b,roughness,tarnish_1_um,soot_um");
+    int count = 0;
+    for (; std::getline(lines, line); ++count) {
+        std::replace(line.begin(), line.end(), ',', ' ');
+        std::istringstream values(line);
+        double x, y, z, l, a, b, roughness, tarnish, soot;
+        ASSERT_TRUE(values >> x >> y >> z >> l >> a >> b >> roughness >> tarnish >> soot) << line;
+        // Even coats on a sphere of 16 voxels' radius: the lattice gives a percent.
+        EXPECT_NEAR(tarnish, 0.35, 0.01);
+        EXPECT_NEAR(soot, 1.0, 0.03);
+        EXPECT_LT(l, 20.0) << "a micrometre of soot is dark";
+    }
+    EXPECT_EQ(count, 3);
+    EXPECT_EQ(run({"probe", "ball/ball.vdb", "--csv", "--points", "-"}, points).out, csv.out);
+}
+
+TEST_F(VolumeCommands, ProbeTellsWhatIsNoPoint) {
+    EXPECT_EQ(run({"probe", "ball/ball.vdb"}).exitCode, 2);
+    for (const char* point : {"0,0", "0,0,0,0", "a,b,c", "nan,0,0", ""})
+        EXPECT_EQ(run({"probe", "ball/ball.vdb", "--at", point}).exitCode, 2) << point;
+    folder.file("points.csv", "0,0,0\n1,2\n");
+    const Outcome wrong = run({"probe", "ball/ball.vdb", "--points", "points.csv"});
+    EXPECT_EQ(wrong.exitCode, 1);
+    EXPECT_THAT(wrong.err, HasSubstr("points.csv:2: '1,2' is not a point"));
+    EXPECT_EQ(run({"probe", "ball/ball.vdb", "--points", "nosuch.csv"}).exitCode, 1);
+}
+
+TEST_F(VolumeCommands, ContactSheetPutsPicturesSideBySide) {
+    const Outcome outcome = run({"contact-sheet", "ball/preview.png", "ball/preview.png", "--label", "left", "--label", "right",
+                                 "--title", "Twice", "-o", "sheet.png"});
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_EQ(outcome.out, "sheet.png\n");
+    EXPECT_EQ(readFile(folder.path() / "sheet.png").substr(1, 3), "PNG");
+    const Outcome labels = run({"contact-sheet", "ball/preview.png", "--label", "a", "--label", "b", "-o", "other.png"});
+    EXPECT_EQ(labels.exitCode, 2);
+    EXPECT_THAT(labels.err, HasSubstr("2 labels for 1 pictures"));
+    EXPECT_EQ(run({"contact-sheet", "nosuch.png", "-o", "other.png"}).exitCode, 1);
+    EXPECT_EQ(run({"contact-sheet", "ball.patina", "-o", "other.png"}).exitCode, 1);
+    EXPECT_EQ(run({"contact-sheet", "ball/preview.png", "-o", "nowhere/sheet.png"}).exitCode, 1);
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "other.png"));
+}
+
+TEST(Materials, AreListedAndToldInDetail) {
+    const TemporaryFolder folder;
+    const Outcome list = vdbPatina({"materials"}, folder.path());
+    ASSERT_EQ(list.exitCode, 0) << list.err;
+    for (const char* name : {"copper", "tarnish_1", "cuprite_2", "marine_patina_3", "soot"})
+        EXPECT_THAT("\n" + list.out, HasSubstr(std::string("\n") + name + " "));
+    const Outcome one = vdbPatina({"materials", "cuprite_2"}, folder.path());
+    EXPECT_EQ(one.exitCode, 0);
+    for (const char* part : {"cuprite_2: ", "L*a*b*", "refractive index", "wavelength/nm", "source: "})
+        EXPECT_THAT(one.out, HasSubstr(part));
+    const Outcome unknown = vdbPatina({"materials", "cuprite_22"}, folder.path());
+    EXPECT_EQ(unknown.exitCode, 2);
+    EXPECT_THAT(unknown.err, HasSubstr("error: cuprite_22: there is no material of this name (did you mean 'cuprite_2'?)"));
+}
+
+struct Extent {
+    int vertices = 0, faces = 0, uvs = 0;
+    double lowest[3] = {1e30, 1e30, 1e30}, highest[3] = {-1e30, -1e30, -1e30};
+
+    explicit Extent(const std::string& obj) {
+        std::istringstream lines(obj);
+        for (std::string line; std::getline(lines, line);) {
+            std::istringstream words(line);
+            std::string word;
+            words >> word;
+            faces += word == "f";
+            uvs += word == "vt";
+            if (word != "v")
+                continue;
+            ++vertices;
+            for (int axis = 0; axis < 3; ++axis) {
+                double value = 0.0;
+                words >> value;
+                lowest[axis] = std::min(lowest[axis], value);
+                highest[axis] = std::max(highest[axis], value);
+            }
+        }
+    }
+    double side(int axis) const { return highest[axis] - lowest[axis]; }
+};
+
+TEST(Make, WritesEveryShapeUprightOnTheGround) {
+    const TemporaryFolder folder;
+    folder.file("a.patina", "new copper\n");
+    for (const char* shape : {"plate", "strip", "sphere", "groove", "tower", "statuette"}) {
+        SCOPED_TRACE(shape);
+        const std::string file = std::string("shapes/") + shape + ".obj";
+        const Outcome outcome = vdbPatina({"make", shape, "-o", "shapes"}, folder.path());
+        ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+        EXPECT_THAT(outcome.out, testing::StartsWith(file + ": "));
+        const Extent extent(readFile(folder.path() / file));
+        EXPECT_GT(extent.faces, 0);
+        EXPECT_GT(extent.uvs, 0);
+        EXPECT_NEAR(extent.lowest[1], 0.0, 1e-5) << "y is up, and it stands on y = 0";
+        if (std::string(shape) == "tower" || std::string(shape) == "statuette") {
+            EXPECT_GT(extent.side(1), std::max(extent.side(0), extent.side(2)));
+        }
+        if (std::string(shape) == "plate" || std::string(shape) == "strip") {
+            EXPECT_NEAR(extent.side(1), 0.0, 1e-6);
+        }
+        // The program reads what it writes.
+        EXPECT_EQ(vdbPatina({"check", "a.patina", file, "--voxels", "32"}, folder.path()).exitCode, 0);
+    }
+    EXPECT_EQ(vdbPatina({"make", "sphere"}, folder.path()).out.substr(0, 12), "./sphere.obj");
+}
+
+} // namespace
+
+} // namespace patina::test
