@@ -17,7 +17,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double filmVoxels = 0.3;
 
-double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double secondsSince(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 void CoatThinFilm(benchmark::State& state) {
     const auto piece = test::makePiece(test::sphere(60.f, 5), test::voxelScale());

@@ -23,7 +23,8 @@ void StackProbeReads(benchmark::State& state) {
     const SurfaceMesh& surface = piece->surface;
     std::size_t vertex = 0;
     for (auto _ : state) {
-        const auto reading = probe.read(Imath::V3d(surface.positions[vertex]), Imath::V3d(surface.normals[vertex]), um.data());
+        const auto reading =
+            probe.read(Imath::V3d(surface.positions[vertex]), Imath::V3d(surface.normals[vertex]), um.data());
         benchmark::DoNotOptimize(reading.height);
         vertex = vertex + 1 == surface.positions.size() ? 0 : vertex + 1;
     }

@@ -25,9 +25,9 @@ class Interrupting : public testing::Test {
     }
 
     Arguments run(Arguments more = {}) const {
-        Arguments words = small({"run", "a.patina", "sphere", "-o", "out", "--progress", "json"});
+        Arguments words{"run", "a.patina", "sphere", "-o", "out", "--progress", "json"};
         words.insert(words.end(), more.begin(), more.end());
-        return words;
+        return small(words);
     }
 
     std::string uninterruptedHash() const {
@@ -99,7 +99,7 @@ TEST_F(Interrupting, BeforeTheFirstStatementIsDoneSavesNothingAndSaysSo) {
 }
 
 TEST_F(Interrupting, ASecondTimeEndsItAtOnce) {
-    RunningProgram program(run({"--picture", "4000", "--samples", "4000", "--voxels", "256"}), folder.path());
+    RunningProgram program(run({"--picture", "4000", "--samples", "4000", "--voxels", "128"}), folder.path());
     ASSERT_TRUE(program.waitFor("\"stage\":\"coat cuprite_2"));
     program.signal(SIGINT);
     // The handler has run when the signal is no longer caught; saving the volume takes far longer than this.

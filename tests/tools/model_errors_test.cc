@@ -56,9 +56,9 @@ class ModelErrors : public testing::Test {
     ModelErrors() { folder.file("a.patina", "new copper\ncoat tarnish_1 0.35\n"); }
 
     Outcome run(const std::string& model, Arguments more = {}) const {
-        Arguments words = small({"run", "a.patina", model, "-o", "out"});
+        Arguments words{"run", "a.patina", model, "-o", "out"};
         words.insert(words.end(), more.begin(), more.end());
-        return vdbPatina(words, folder.path());
+        return vdbPatina(small(words), folder.path());
     }
 
     TemporaryFolder folder;

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -14,6 +15,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 namespace patina::test {
 
@@ -163,8 +165,11 @@ Outcome vdbPatina(const Arguments& arguments, const fs::path& folder, const std:
 }
 
 Arguments small(Arguments arguments) {
-    for (const char* word : {"--voxels", "32", "--resolution", "64", "--picture", "48", "--samples", "1"})
-        arguments.emplace_back(word);
+    const std::pair<const char*, const char*> options[] = {
+        {"--voxels", "32"}, {"--resolution", "64"}, {"--picture", "48"}, {"--samples", "1"}};
+    for (const auto& [name, value] : options)
+        if (std::find(arguments.begin(), arguments.end(), name) == arguments.end())
+            arguments.insert(arguments.end(), {name, value});
     return arguments;
 }
 

@@ -68,7 +68,7 @@ class RunningProgram {
 /// Runs vdb-patina to its end, in a folder.
 Outcome vdbPatina(const Arguments& arguments, const std::filesystem::path& folder, const std::string& input = {});
 
-/// Options that make a run take about a second.
+/// Adds the options that make a run take about a second, those that are there excepted.
 Arguments small(Arguments arguments);
 
 std::string readFile(const std::filesystem::path& path);

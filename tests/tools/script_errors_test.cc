@@ -34,27 +34,31 @@ TEST(ScriptErrors, AllThreeAreToldAtOnceWithLineAndCaret) {
 
 struct WrongScript {
     const char* text;
-    const char* says;
+    std::vector<const char*> says;
 };
 
 TEST(ScriptErrors, NameThePlaceAndEndWith3) {
     const TemporaryFolder folder;
     const WrongScript scripts[] = {
-        {"", "error: "},
-        {"coat soot 1\n", ":1:1: error: "},
-        {"new coper\n", "did you mean 'copper'?"},
-        {"new copper\ncoat soot\n", ":2:"},
-        {"new copper\nfrobnicate 3\n", ":2:1: error: "},
-        {"new copper\ncoat soot 1 texture(BD.linar_5.40)\n", "did you mean 'linear'?"},
-        {"new copper\ncoat soot 1 texture(BD.linear_50.40)\n", ":2:"},
-        {"new copper\ncoat soot 1 texture(\"missing.png\")\n", ":2:21: error: "},
-        {"open \"missing.vdb\"\ncoat soot 1\n", ":1:6: error: "},
-        {"new copper\ncoat soot 1 vertices(wear)\n", ":2:"},
-        {"new copper\ncoat soot (1\n", ":2:11: error: "},
-        {"new copper\nfill dirt 1.5\n", ":2:1: error: 'fill' is not there yet in this version"},
-        {"new copper\npolish 2\n", ":2:1: error: 'polish' is not there yet in this version"},
-        {"new copper\noffset wax 0.2mm\n", ":2:1: error: 'offset' is not there yet in this version"},
-        {"new copper\ncoat soot 1 wetness\n", "not there yet in this version"},
+        {"", {"error: "}},
+        {"coat soot 1\n", {":1:1: error: "}},
+        {"new coper\n", {"did you mean 'copper'?"}},
+        {"open \"missing.vdb\"\ncoat soot 1\n", {":1:6: error: "}},
+        {"new copper\ncoat soot (1\n", {":2:11: error: "}},
+        {"new copper\n"
+         "coat soot\n"
+         "frobnicate 3\n"
+         "coat soot 1 texture(BD.linar_5.40)\n"
+         "coat soot 1 texture(BD.linear_50.40)\n"
+         "coat soot 1 texture(\"missing.png\")\n",
+         {":2:", ":3:1: error: ", ":4:", "did you mean 'linear'?", ":5:", ":6:21: error: "}},
+        {"new copper\n"
+         "coat soot 1 vertices(wear)\n",
+         {":2:"}},
+        {"new copper\n"
+         "unheard dirt\n"
+         "coat soot 1 unheard(3mm)\n",
+         {":2:1: error: ", ":3:13: error: "}},
     };
     for (const WrongScript& script : scripts) {
         SCOPED_TRACE(script.text);
@@ -63,9 +67,14 @@ TEST(ScriptErrors, NameThePlaceAndEndWith3) {
         EXPECT_EQ(outcome.exitCode, 3);
         EXPECT_EQ(outcome.out, "");
         EXPECT_THAT(outcome.err, HasSubstr("wrong.patina"));
-        EXPECT_THAT(outcome.err, HasSubstr(script.says));
+        for (const char* words : script.says)
+            EXPECT_THAT(outcome.err, HasSubstr(words));
         EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
     }
+}
+
+TEST(ScriptErrors, WordsThatThisVersionDoesNotRunAreSome)
+{
 }
 
 TEST(ScriptErrors, UnknownParameterIsOne) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <memory>
 #include <sstream>
 
 namespace patina::test {
@@ -16,18 +17,27 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-// One sphere with 0.35 µm of tarnish and 1 µm of soot on it.
+// One sphere with 0.35 µm of tarnish and 1 µm of soot on it, made once; every test has a copy.
 class VolumeCommands : public testing::Test {
   protected:
+    static void SetUpTestSuite() {
+        ball = std::make_unique<TemporaryFolder>();
+        ball->file("ball.patina", "new copper\ncoat tarnish_1 0.35\ncoat soot 1\n");
+        made = vdbPatina(small({"run", "ball.patina", "sphere"}), ball->path());
+    }
+
+    static void TearDownTestSuite() { ball.reset(); }
+
     void SetUp() override {
-        folder.file("ball.patina", "new copper\ncoat tarnish_1 0.35\ncoat soot 1\n");
-        const Outcome outcome = vdbPatina(small({"run", "ball.patina", "sphere"}), folder.path());
-        ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
-        hash = contentHashIn(outcome.out);
+        ASSERT_EQ(made.exitCode, 0) << made.err;
+        std::filesystem::copy(ball->path(), folder.path(), std::filesystem::copy_options::recursive);
+        hash = contentHashIn(made.out);
     }
 
     Outcome run(const Arguments& words, const std::string& input = {}) const { return vdbPatina(words, folder.path(), input); }
 
+    inline static std::unique_ptr<TemporaryFolder> ball;
+    inline static Outcome made;
     TemporaryFolder folder;
     std::string hash;
 };
@@ -210,7 +220,7 @@ TEST(Make, WritesEveryShapeUprightOnTheGround) {
         const Extent extent(readFile(folder.path() / file));
         EXPECT_GT(extent.faces, 0);
         EXPECT_GT(extent.uvs, 0);
-        EXPECT_NEAR(extent.lowest[1], 0.0, 1e-5) << "y is up, and it stands on y = 0";
+        EXPECT_NEAR(extent.lowest[1], 0.0, 2e-4) << "y is up, and it stands on y = 0";
         if (std::string(shape) == "tower" || std::string(shape) == "statuette") {
             EXPECT_GT(extent.side(1), std::max(extent.side(0), extent.side(2)));
         }

@@ -170,10 +170,14 @@ std::string describeParseError(const CLI::ParseError& error, const CLI::App& app
         return text;
     }
     if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) {
-        // "--samples: 1 required N missing"
-        const std::string text = error.what();
-        const std::size_t missing = text.find(" missing"), colon = text.find(": ");
-        return missing != std::string::npos && colon != std::string::npos ? text.substr(0, colon) + ": its value is missing" : text;
+        // "--samples: 1 required N missing", "--samples: At Most 1 required but received 2"
+        const std::string text = error.what(), received = "At Most 1 required but received ";
+        const std::size_t colon = text.find(": "), times = text.find(received);
+        if (colon != std::string::npos && times != std::string::npos)
+            return fmt::format("{} is given {} times", text.substr(0, colon), text.substr(times + received.size()));
+        if (colon != std::string::npos && text.find(" missing") != std::string::npos)
+            return text.substr(0, colon) + ": its value is missing";
+        return text;
     }
     return error.what();
 }

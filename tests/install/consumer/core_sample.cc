@@ -16,7 +16,8 @@ int main(int count, char** words) {
     patina::initializeVolumes();
     const patina::LayerVolume volume = patina::readVolume(words[1]);
     std::vector<double> um(volume.layerCount());
-    const auto reading = patina::StackProbe(volume).read({number(2), number(3), number(4)}, {number(5), number(6), number(7)}, um.data());
+    const auto reading = patina::StackProbe(volume).read({number(2), number(3), number(4)},
+                                                         {number(5), number(6), number(7)}, um.data());
     if (!reading.found)
         return 1;
 
