@@ -85,9 +85,9 @@ TEST(CommandLine, HelpListsEveryCommandWithoutRequiredNoise) {
 TEST(CommandLine, HelpNamesTheOptionsOfTheManual) {
     const TemporaryFolder folder;
     const std::string help = vdbPatina({"run", "--help"}, folder.path()).out;
-    for (const char* option : {"-o,", "--voxels N", "--voxel-size X", "--unit", "--exaggeration E", "--subdivide L", "--resolution P",
-                               "--seed S", "--threads T", "--set NAME=VALUE", "--budget GIB", "--dry-run", "--force", "-v,", "-q,",
-                               "--progress", "--report FILE", "--resume"})
+    for (const char* option : {"-o,", "--voxels N", "--voxel-size X", "--unit", "--exaggeration E", "--subdivide L",
+                               "--resolution P", "--seed S", "--threads T", "--set NAME=VALUE", "--budget GIB",
+                               "--dry-run", "--force", "-v,", "-q,", "--progress", "--report FILE", "--resume"})
         EXPECT_THAT(help, HasSubstr(option));
 }
 

@@ -48,7 +48,9 @@ TEST_F(Interrupting, AStatementGoesOnFromTheOneBefore) {
     const Outcome stopped = program.finish();
     ASSERT_EQ(stopped.exitCode, 130) << stopped.err;
     EXPECT_EQ(stopped.out, "");
-    EXPECT_THAT(stopped.err, HasSubstr("interrupted after 2 of 4 statements; what was finished is saved (the same command with --resume"));
+    EXPECT_THAT(
+        stopped.err,
+        HasSubstr("interrupted after 2 of 4 statements; what was finished is saved (the same command with --resume"));
     EXPECT_EQ(filesIn(folder.path() / "out"), interruptedFiles);
 
     // Other inputs are another history.
@@ -112,7 +114,8 @@ TEST_F(Interrupting, ASecondTimeEndsItAtOnce) {
 TEST_F(Interrupting, NothingToResumeIsAWrongCommandLine) {
     const Outcome outcome = vdbPatina(run({"--resume"}), folder.path());
     EXPECT_EQ(outcome.exitCode, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("there is no interrupted run of this script in 'out' (start anew, without --resume)"));
+    EXPECT_THAT(outcome.err,
+                HasSubstr("there is no interrupted run of this script in 'out' (start anew, without --resume)"));
 }
 
 TEST_F(Interrupting, ADamagedStateIsToldAndNotTrusted) {

@@ -77,8 +77,9 @@ TEST_F(ModelErrors, EndWith4NameThePlaceAndLeaveNothing) {
         {"empty.stl", "", "empty.stl"},
         {"nothing.obj", "# no faces\nv 0 0 0\n", "nothing.obj"},
         {"truncated.stl", binaryStl(cube(1.f), 12).substr(0, 400), "truncated.stl"},
-        {"truncated.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-                          "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n",
+        {"truncated.ply",
+         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+         "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n",
          "truncated.ply"},
         {"claims.stl", binaryStl(cube(1.f), 4000000000u), "claims.stl"},
         {"nan.stl", binaryStl(broken, 12), "nan.stl"},
@@ -125,7 +126,8 @@ TEST_F(ModelErrors, NoneForACubeInStl) {
 }
 
 TEST_F(ModelErrors, NoneForUvsThatStickOutByATexel) {
-    folder.file("uv.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1.001 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n");
+    folder.file("uv.obj",
+                "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1.001 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n");
     const Outcome outcome = run("uv.obj");
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("warning: UVs reach 0.001 beyond the unit square"));

@@ -26,7 +26,9 @@ namespace {
 
 constexpr auto patience = std::chrono::seconds(60);
 
-void pauseShortly() { std::this_thread::sleep_for(std::chrono::milliseconds(2)); }
+void pauseShortly() {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+}
 
 std::vector<std::string> environment() {
     std::vector<std::string> variables;
@@ -64,7 +66,8 @@ std::string TemporaryFolder::file(const std::string& name, const std::string& co
     return at(name);
 }
 
-RunningProgram::RunningProgram(const Arguments& arguments, const fs::path& folder, bool errorIsTerminal, const std::string& input) {
+RunningProgram::RunningProgram(const Arguments& arguments, const fs::path& folder, bool errorIsTerminal,
+                               const std::string& input) {
     std::vector<std::string> words{PATINA_PROGRAM};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<std::string> variables = environment();
@@ -122,7 +125,9 @@ bool RunningProgram::waitFor(const std::string& text) {
     return false;
 }
 
-void RunningProgram::signal(int number) const { ::kill(pid_, number); }
+void RunningProgram::signal(int number) const {
+    ::kill(pid_, number);
+}
 
 bool RunningProgram::waitUntilNotCaught(int number) const {
     for (const auto start = Clock::now(); Clock::now() - start < patience;) {

@@ -155,7 +155,8 @@ TEST_F(RunFailures, ADamagedVolumeIsOne) {
     for (const Arguments& words :
          {Arguments{"info", "truncated.vdb"}, Arguments{"info", "flipped.vdb"}, Arguments{"info", "empty.vdb"},
           Arguments{"info", "text.vdb"}, Arguments{"bake", "truncated.vdb", "strip", "-o", "baked"},
-          Arguments{"render", "flipped.vdb", "strip", "-o", "baked"}, Arguments{"probe", "truncated.vdb", "strip", "--at", "0,0,0"}}) {
+          Arguments{"render", "flipped.vdb", "strip", "-o", "baked"},
+          Arguments{"probe", "truncated.vdb", "strip", "--at", "0,0,0"}}) {
         SCOPED_TRACE(testing::PrintToString(words));
         const Outcome outcome = vdbPatina(words, folder.path());
         EXPECT_EQ(outcome.exitCode, 1);

@@ -29,10 +29,11 @@ TEST(Run, WritesExactlyThePromisedFiles) {
     const Outcome outcome = vdbPatina(small({"run", "a.patina", "strip", "-o", "out"}), folder.path());
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
     EXPECT_EQ(filesIn(folder.path() / "out"),
-              (std::set<std::string>{"a.vdb", "a.obj", "a_limit.ply", "preview.png", "report.json", "displacement.exr", "diffuse.exr",
-                                     "lobe_00_copper.exr", "lobe_01_tarnish_1.exr", "lobe_02_cuprite_2.exr", "base_color.exr",
-                                     "metallic.exr", "roughness.exr", "normal.exr", "thickness_01_tarnish_1.exr",
-                                     "coverage_01_tarnish_1.exr", "thickness_02_cuprite_2.exr", "coverage_02_cuprite_2.exr"}));
+              (std::set<std::string>{"a.vdb", "a.obj", "a_limit.ply", "preview.png", "report.json", "displacement.exr",
+                                     "diffuse.exr", "lobe_00_copper.exr", "lobe_01_tarnish_1.exr",
+                                     "lobe_02_cuprite_2.exr", "base_color.exr", "metallic.exr", "roughness.exr",
+                                     "normal.exr", "thickness_01_tarnish_1.exr", "coverage_01_tarnish_1.exr",
+                                     "thickness_02_cuprite_2.exr", "coverage_02_cuprite_2.exr"}));
     EXPECT_EQ(filesIn(folder.path()), (std::set<std::string>{"a.patina", "out"}));
 
     const json report = json::parse(readFile(folder.path() / "out/report.json"));
@@ -67,7 +68,8 @@ TEST(Run, GivesTheSameContentOnAnyNumberOfThreadsAndEveryTime) {
                             "erode 0.2 texture(RDR(rate=cubic, step=5, total=20, cell=2mm))\n");
     std::set<std::string> hashes, displacements;
     for (const char* threads : {"1", "2", "2"}) {
-        const Outcome outcome = vdbPatina(small({"run", "a.patina", "sphere", "-o", "out", "--threads", threads}), folder.path());
+        const Outcome outcome =
+            vdbPatina(small({"run", "a.patina", "sphere", "-o", "out", "--threads", threads}), folder.path());
         ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
         hashes.insert(contentHashIn(outcome.out));
         displacements.insert(readFile(folder.path() / "out/displacement.exr"));
@@ -89,7 +91,8 @@ TEST(Run, SaysItsResultOnStdoutAndEverythingElseOnStderr) {
     // No bar, no colour: this is not a terminal.
     EXPECT_THAT(outcome.err, Not(HasSubstr("\r")));
     EXPECT_THAT(outcome.err, Not(HasSubstr("\x1b")));
-    EXPECT_EQ(filesIn(folder.path()), (std::set<std::string>{"a", "a.patina"})) << "without -o the folder has the script's name";
+    EXPECT_EQ(filesIn(folder.path()), (std::set<std::string>{"a", "a.patina"}))
+        << "without -o the folder has the script's name";
 
     const Outcome quiet = vdbPatina(small({"run", "a.patina", "-q"}), folder.path());
     EXPECT_EQ(quiet.exitCode, 0);
@@ -143,7 +146,8 @@ TEST(Run, DryRunPrintsTheBudgetAndWritesNothing) {
 TEST(Run, OverTheBudgetEndsWith5AndLeavesNothing) {
     const TemporaryFolder folder;
     folder.file("a.patina", twoLayers);
-    const Outcome outcome = vdbPatina(small({"run", "a.patina", "strip", "-o", "out", "--budget", "0.001"}), folder.path());
+    const Outcome outcome =
+        vdbPatina(small({"run", "a.patina", "strip", "-o", "out", "--budget", "0.001"}), folder.path());
     EXPECT_EQ(outcome.exitCode, 5);
     EXPECT_EQ(outcome.out, "");
     EXPECT_THAT(outcome.err, HasSubstr("nothing was started (use fewer --voxels"));
@@ -162,7 +166,8 @@ TEST(Run, SetChangesAParameterAndReportTellsIt) {
     const TemporaryFolder folder;
     folder.file("a.patina", "param thick = 1\nnew copper\ncoat tarnish_1 thick\n");
     const Outcome outcome =
-        vdbPatina(small({"run", "a.patina", "sphere", "-o", "out", "--set", "thick=2um", "--report", "elsewhere.json"}), folder.path());
+        vdbPatina(small({"run", "a.patina", "sphere", "-o", "out", "--set", "thick=2um", "--report", "elsewhere.json"}),
+                  folder.path());
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
     EXPECT_EQ(filesIn(folder.path() / "out").count("report.json"), 0u);
     const json report = json::parse(readFile(folder.path() / "elsewhere.json"));

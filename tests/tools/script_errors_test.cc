@@ -56,8 +56,8 @@ TEST(ScriptErrors, NameThePlaceAndEndWith3) {
          "coat soot 1 vertices(wear)\n",
          {":2:"}},
         {"new copper\n"
-         "unheard dirt\n"
-         "coat soot 1 unheard(3mm)\n",
+         "rust 3\n"
+         "coat soot 1 moss(3mm)\n",
          {":2:1: error: ", ":3:13: error: "}},
     };
     for (const WrongScript& script : scripts) {
@@ -73,8 +73,24 @@ TEST(ScriptErrors, NameThePlaceAndEndWith3) {
     }
 }
 
-TEST(ScriptErrors, WordsThatThisVersionDoesNotRunAreSome)
-{
+TEST(ScriptErrors, WordsOfTheLanguageThatThisVersionCannotRunAreSome) {
+    const TemporaryFolder folder;
+    folder.file("later.patina", "new copper\n"
+                                "fill dirt 1.5\n"
+                                "polish 2\n"
+                                "offset wax 0.2mm\n"
+                                "grow soot 1\n"
+                                "coat soot 1 wetness\n");
+    const Outcome outcome = vdbPatina(small({"run", "later.patina", "strip", "-o", "out"}), folder.path());
+    EXPECT_EQ(outcome.exitCode, 3);
+    EXPECT_EQ(outcome.out, "");
+    for (const char* error : {"later.patina:2:1: error: 'fill' is not there yet in this version",
+                              "later.patina:3:1: error: 'polish' is not there yet in this version",
+                              "later.patina:4:1: error: 'offset' is not there yet in this version",
+                              "later.patina:5:1: error: 'grow' is not there yet in this version",
+                              "later.patina:6:13: error: 'wetness' is not there yet in this version"})
+        EXPECT_THAT(outcome.err, HasSubstr(error));
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
 }
 
 TEST(ScriptErrors, UnknownParameterIsOne) {

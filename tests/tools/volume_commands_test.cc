@@ -34,7 +34,9 @@ class VolumeCommands : public testing::Test {
         hash = contentHashIn(made.out);
     }
 
-    Outcome run(const Arguments& words, const std::string& input = {}) const { return vdbPatina(words, folder.path(), input); }
+    Outcome run(const Arguments& words, const std::string& input = {}) const {
+        return vdbPatina(words, folder.path(), input);
+    }
 
     inline static std::unique_ptr<TemporaryFolder> ball;
     inline static Outcome made;
@@ -45,8 +47,8 @@ class VolumeCommands : public testing::Test {
 TEST_F(VolumeCommands, InfoTellsGridsLayersThicknessAndProvenance) {
     const Outcome text = run({"info", "ball/ball.vdb"});
     ASSERT_EQ(text.exitCode, 0) << text.err;
-    for (const char* part : {"model 'sphere'", "script 'ball'", "1=copper", "2=tarnish_1", "3=soot", "base ", "interface_01_tarnish_1",
-                             "interface_02_soot", "material ", "µm on average"})
+    for (const char* part : {"model 'sphere'", "script 'ball'", "1=copper", "2=tarnish_1", "3=soot", "base ",
+                             "interface_01_tarnish_1", "interface_02_soot", "material ", "µm on average"})
         EXPECT_THAT(text.out, HasSubstr(part));
     EXPECT_EQ(contentHashIn(text.out), hash);
 
@@ -153,12 +155,13 @@ TEST_F(VolumeCommands, ProbeTellsWhatIsNoPoint) {
 }
 
 TEST_F(VolumeCommands, ContactSheetPutsPicturesSideBySide) {
-    const Outcome outcome = run({"contact-sheet", "ball/preview.png", "ball/preview.png", "--label", "left", "--label", "right",
-                                 "--title", "Twice", "-o", "sheet.png"});
+    const Outcome outcome = run({"contact-sheet", "ball/preview.png", "ball/preview.png", "--label", "left", "--label",
+                                 "right", "--title", "Twice", "-o", "sheet.png"});
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
     EXPECT_EQ(outcome.out, "sheet.png\n");
     EXPECT_EQ(readFile(folder.path() / "sheet.png").substr(1, 3), "PNG");
-    const Outcome labels = run({"contact-sheet", "ball/preview.png", "--label", "a", "--label", "b", "-o", "other.png"});
+    const Outcome labels =
+        run({"contact-sheet", "ball/preview.png", "--label", "a", "--label", "b", "-o", "other.png"});
     EXPECT_EQ(labels.exitCode, 2);
     EXPECT_THAT(labels.err, HasSubstr("2 labels for 1 pictures"));
     EXPECT_EQ(run({"contact-sheet", "nosuch.png", "-o", "other.png"}).exitCode, 1);
@@ -179,7 +182,8 @@ TEST(Materials, AreListedAndToldInDetail) {
         EXPECT_THAT(one.out, HasSubstr(part));
     const Outcome unknown = vdbPatina({"materials", "cuprite_22"}, folder.path());
     EXPECT_EQ(unknown.exitCode, 2);
-    EXPECT_THAT(unknown.err, HasSubstr("error: cuprite_22: there is no material of this name (did you mean 'cuprite_2'?)"));
+    EXPECT_THAT(unknown.err,
+                HasSubstr("error: cuprite_22: there is no material of this name (did you mean 'cuprite_2'?)"));
 }
 
 struct Extent {

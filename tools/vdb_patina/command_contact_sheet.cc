@@ -47,13 +47,18 @@ void addContactSheetCommand(CLI::App& app, Options& options, Action& action) {
     CLI::App* command = app.add_subcommand("contact-sheet", "Several pictures on one sheet, with labels");
     auto arguments = std::make_shared<Arguments>();
     command->add_option("PICTURES", arguments->pictures, "PNG files")->required();
-    command->add_option("--label", arguments->labels, "Label of each picture, in order")->allow_extra_args(false)->type_name("TEXT")->group("Sheet");
+    command->add_option("--label", arguments->labels, "Label of each picture, in order")
+        ->allow_extra_args(false)
+        ->type_name("TEXT")
+        ->group("Sheet");
     command->add_option("--title", arguments->title, "Above all of them")->type_name("TEXT")->group("Sheet");
     command->add_option("--columns", arguments->columns, "Pictures in a row (default: about 16:9)")
         ->check(wholeNumberWithin(1, 100))
         ->type_name("N")
         ->group("Sheet");
-    command->add_option("-o,--output", arguments->file, "The sheet (default contact_sheet.png)")->type_name("FILE")->group("Sheet");
+    command->add_option("-o,--output", arguments->file, "The sheet (default contact_sheet.png)")
+        ->type_name("FILE")
+        ->group("Sheet");
     addGeneralOptions(*command, options);
     command->callback(
         [&action, arguments] { action = [arguments](Console& console) { makeSheet(*arguments, console); }; });

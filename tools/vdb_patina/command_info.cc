@@ -27,8 +27,8 @@ struct Arguments {
 };
 
 // Thickness is read along the model's normals; without the model a volume tells all but that.
-std::optional<StackStatistics> statisticsOf(const LayerVolume& volume, const Arguments& arguments, const Options& options,
-                                            Console& console) {
+std::optional<StackStatistics> statisticsOf(const LayerVolume& volume, const Arguments& arguments,
+                                            const Options& options, Console& console) {
     std::string file = arguments.model;
     if (file.empty()) {
         const auto beside = std::filesystem::path(arguments.file).replace_extension(".obj");
@@ -84,8 +84,8 @@ void tell(const Arguments& arguments, const Options& options, Console& console) 
         console.result(json.dump(2));
         return;
     }
-    std::string text = fmt::format("{}\n  model '{}', script '{}', seed {}, vdb-patina {}\n", arguments.file, from.model,
-                                   from.scriptName, from.seed, from.program);
+    std::string text = fmt::format("{}\n  model '{}', script '{}', seed {}, vdb-patina {}\n", arguments.file,
+                                   from.model, from.scriptName, from.seed, from.program);
     text += fmt::format("  voxels of {} ({:.6g} scene units of {:g} m), thickness drawn {:g} times life size\n",
                         readableLength(voxelUm), scale.voxelSize, scale.metresPerUnit, scale.exaggeration);
     text += fmt::format("  {:.3g} million voxels in the band, {} in memory\n", double(volume.activeVoxels()) * 1e-6,
@@ -96,8 +96,9 @@ void tell(const Arguments& arguments, const Options& options, Console& console) 
     if (stack) {
         text += "\n  layers, top to bottom:\n";
         for (auto layer = stack->layers.rbegin(); layer != stack->layers.rend(); ++layer)
-            text += fmt::format("    {:<24} {:>9.3g} µm on average, {:>8.3g} at most, on {:5.1f} % of the surface, {:.3g} mm³\n",
-                                layer->material, layer->meanUm, layer->maxUm, 100.0 * layer->coverage, layer->volumeM3 * 1e9);
+            text += fmt::format(
+                "    {:<24} {:>9.3g} µm on average, {:>8.3g} at most, on {:5.1f} % of the surface, {:.3g} mm³\n",
+                layer->material, layer->meanUm, layer->maxUm, 100.0 * layer->coverage, layer->volumeM3 * 1e9);
     } else {
         text += "\n  layers' thickness: give the model behind the file\n";
     }
@@ -115,7 +116,8 @@ void addInfoCommand(CLI::App& app, Options& options, Action& action) {
     CLI::App* command = app.add_subcommand("info", "What a volume holds: grids, layers, memory, provenance");
     auto arguments = std::make_shared<Arguments>();
     command->add_option("FILE", arguments->file, "A .vdb that `run` wrote")->required();
-    command->add_option("MODEL", arguments->model, "The model it was made from (default: the .obj that `run` wrote beside it)");
+    command->add_option("MODEL", arguments->model,
+                        "The model it was made from (default: the .obj that `run` wrote beside it)");
     command->add_flag("--json", arguments->json, "As JSON, with the script's text")->group("Results");
     addGeneralOptions(*command, options);
     addModelOptions(*command, options);

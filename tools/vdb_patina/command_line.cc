@@ -56,7 +56,9 @@ std::string listed(const std::vector<std::string>& words) {
     return text;
 }
 
-std::string inBrackets(const std::string& hint) { return hint.empty() ? hint : " (" + hint + ")"; }
+std::string inBrackets(const std::string& hint) {
+    return hint.empty() ? hint : " (" + hint + ")";
+}
 
 std::vector<std::string> commandNames(const CLI::App& app) {
     std::vector<std::string> names;
@@ -67,11 +69,13 @@ std::vector<std::string> commandNames(const CLI::App& app) {
 
 std::string describeMissingCommand(const CLI::App& app, const std::vector<std::string>& words) {
     const auto names = commandNames(app);
-    const auto word = std::find_if(words.begin(), words.end(), [](const std::string& w) { return w.rfind("-", 0) != 0; });
+    const auto word =
+        std::find_if(words.begin(), words.end(), [](const std::string& w) { return w.rfind("-", 0) != 0; });
     if (word == words.end())
         return "a command is missing: one of " + listed(names);
     const std::string extension = ".patina";
-    if (word->size() > extension.size() && word->compare(word->size() - extension.size(), extension.size(), extension) == 0)
+    if (word->size() > extension.size() &&
+        word->compare(word->size() - extension.size(), extension.size(), extension) == 0)
         return fmt::format("'{}' is not a command (did you mean 'vdb-patina run {}'?)", *word, *word);
     const std::string hint = didYouMean(*word, names);
     return fmt::format("'{}' is not a command ({})", *word, hint.empty() ? "one of " + listed(names) : hint);
@@ -100,7 +104,9 @@ std::string describeUnexpected(const CLI::App& app) {
 
 } // namespace
 
-std::shared_ptr<CLI::FormatterBase> helpLayout() { return std::make_shared<HelpLayout>(); }
+std::shared_ptr<CLI::FormatterBase> helpLayout() {
+    return std::make_shared<HelpLayout>();
+}
 
 CLI::Validator numberWithin(double lowest, double highest) {
     return CLI::Validator(
@@ -116,7 +122,8 @@ CLI::Validator numberWithin(double lowest, double highest) {
 CLI::Validator wholeNumberWithin(long long lowest, long long highest) {
     return CLI::Validator(
         [lowest, highest](std::string& text) {
-            const bool whole = !text.empty() && text.find_first_not_of("0123456789", text[0] == '-' ? 1 : 0) == std::string::npos;
+            const bool whole =
+                !text.empty() && text.find_first_not_of("0123456789", text[0] == '-' ? 1 : 0) == std::string::npos;
             const auto value = numberIn(text);
             return whole && value && *value >= double(lowest) && *value <= double(highest)
                        ? std::string()
@@ -145,7 +152,8 @@ CLI::Validator oneOf(std::vector<std::string> words) {
         "");
 }
 
-std::string describeParseError(const CLI::ParseError& error, const CLI::App& app, const std::vector<std::string>& words) {
+std::string describeParseError(const CLI::ParseError& error, const CLI::App& app,
+                               const std::vector<std::string>& words) {
     if (dynamic_cast<const CLI::ExtrasError*>(&error))
         return describeUnexpected(app);
     if (dynamic_cast<const CLI::RequiredError*>(&error)) {
@@ -159,14 +167,16 @@ std::string describeParseError(const CLI::ParseError& error, const CLI::App& app
         const std::string text = error.what();
         const std::size_t colon = text.find(": "), equals = text.find(" = ");
         if (colon != std::string::npos && equals != std::string::npos && equals > colon)
-            return fmt::format("{}: '{}' is not a number it can take", text.substr(colon + 2, equals - colon - 2), text.substr(equals + 3));
+            return fmt::format("{}: '{}' is not a number it can take", text.substr(colon + 2, equals - colon - 2),
+                               text.substr(equals + 3));
         return text;
     }
     if (dynamic_cast<const CLI::ExcludesError*>(&error)) {
         std::string text = error.what();
         const std::size_t at = text.find(" excludes ");
         if (at != std::string::npos)
-            return fmt::format("{} and {} exclude each other (leave one out)", text.substr(0, at), text.substr(at + 10));
+            return fmt::format("{} and {} exclude each other (leave one out)", text.substr(0, at),
+                               text.substr(at + 10));
         return text;
     }
     if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) {

@@ -1,5 +1,6 @@
 #pragma once
-// How the command line reads: the help's layout, checks whose errors are sentences, what to say to a line that is wrong.
+// How the command line reads: the help's layout, checks whose errors are sentences, what to say to a line that is
+// wrong.
 
 #include <CLI/CLI.hpp>
 
@@ -22,7 +23,8 @@ CLI::Validator numberAboveZero();
 CLI::Validator oneOf(std::vector<std::string> words);
 
 /// What was wrong with a command line, and which command or option was probably meant.
-std::string describeParseError(const CLI::ParseError& error, const CLI::App& app, const std::vector<std::string>& words);
+std::string describeParseError(const CLI::ParseError& error, const CLI::App& app,
+                               const std::vector<std::string>& words);
 /// The line that follows it.
 std::string whereHelpIs(const CLI::App& app);
 

@@ -18,20 +18,22 @@ namespace {
 void list(const MaterialLibrary& library, Console& console) {
     for (const std::string& name : library.names()) {
         const Material& m = library.at(name);
-        console.result(fmt::format("{:<20} {} {} {}{}", name, srgbHex(Imath::V3d(m.swatch)), m.isMetal ? "metal" : "layer",
-                                   m.title, m.isEstimate ? " (estimate)" : ""));
+        console.result(fmt::format("{:<20} {} {} {}{}", name, srgbHex(Imath::V3d(m.swatch)),
+                                   m.isMetal ? "metal" : "layer", m.title, m.isEstimate ? " (estimate)" : ""));
     }
 }
 
 void detail(const MaterialLibrary& library, const std::string& name, Console& console) {
     const Material* m = library.find(name);
     if (!m)
-        throw Error(ExitCode::commandLine, name, "there is no material of this name", didYouMean(name, library.names()));
+        throw Error(ExitCode::commandLine, name, "there is no material of this name",
+                    didYouMean(name, library.names()));
     std::string text = fmt::format("{}: {}\n", m->name, m->title);
     const Imath::V3d lab = labFromXyz(xyzFromLinearRec709(Imath::V3d(m->swatch)));
-    text += fmt::format("  an opaque layer is {} (L*a*b* {:.1f} {:.1f} {:.1f})\n", srgbHex(Imath::V3d(m->swatch)), lab.x, lab.y, lab.z);
-    text += fmt::format("  roughness {:.3g}, refractive index {:.3g}, hardness {:.3g}, solid fraction {:.3g}\n", m->roughness,
-                        m->refractiveIndex, m->hardness, m->density);
+    text += fmt::format("  an opaque layer is {} (L*a*b* {:.1f} {:.1f} {:.1f})\n", srgbHex(Imath::V3d(m->swatch)),
+                        lab.x, lab.y, lab.z);
+    text += fmt::format("  roughness {:.3g}, refractive index {:.3g}, hardness {:.3g}, solid fraction {:.3g}\n",
+                        m->roughness, m->refractiveIndex, m->hardness, m->density);
     text += m->isMetal ? "  wavelength/nm  R(normal incidence)\n" : "  wavelength/nm  R_inf      K/(1/µm)   S/(1/µm)\n";
     for (int i = 0; i < bandCount; ++i) {
         text += fmt::format("  {:>12.0f}  {:8.4f}", bandWavelengthNm(i), m->reflectance[i]);

@@ -33,7 +33,8 @@ struct Arguments {
 };
 
 std::optional<Imath::V3d> pointIn(std::string text) {
-    std::replace_if(text.begin(), text.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
     std::istringstream in(text);
     Imath::V3d p;
     std::string more;
@@ -72,7 +73,8 @@ std::vector<Imath::V3d> pointsOf(const Arguments& arguments) {
         std::istringstream in(readTextFile(arguments.pointFile));
         readPoints(in, arguments.pointFile, points);
     } else if (points.empty()) {
-        throw Error(ExitCode::commandLine, "--at", "no point was given", "as in --at 0.1,0.2,0.05, or give a file with --points");
+        throw Error(ExitCode::commandLine, "--at", "no point was given",
+                    "as in --at 0.1,0.2,0.05, or give a file with --points");
     }
     return points;
 }
@@ -98,27 +100,28 @@ void probeVolume(const Arguments& arguments, const Options& options, Console& co
         std::vector<float> thicknessUm(thickness.size());
         const auto reading = probe.read(position, normalAt(input.model.surface, closest->point), thickness.data());
         if (!reading.found)
-            console.warning(fmt::format("({:g}, {:g}, {:g}): no metal was found along the normal here", wanted.x, wanted.y, wanted.z));
+            console.warning(fmt::format("({:g}, {:g}, {:g}): no metal was found along the normal here", wanted.x,
+                                        wanted.y, wanted.z));
         for (std::size_t k = 0; k < layers.size(); ++k)
             thicknessUm[k] = static_cast<float>(thickness[k]);
         Appearance look;
         optics.evaluate(thicknessUm.data(), look);
         const Imath::V3d lab = labFromXyz(xyzFromLinearRec709(Imath::V3d(look.baseColour)));
         if (arguments.csv) {
-            std::string row = fmt::format("{:.7g},{:.7g},{:.7g},{:.2f},{:.2f},{:.2f},{:.3f}", position.x, position.y, position.z,
-                                          lab.x, lab.y, lab.z, look.flattenedRoughness);
+            std::string row = fmt::format("{:.7g},{:.7g},{:.7g},{:.2f},{:.2f},{:.2f},{:.3f}", position.x, position.y,
+                                          position.z, lab.x, lab.y, lab.z, look.flattenedRoughness);
             for (std::size_t k = 0; k < layers.size(); ++k)
                 row += fmt::format(",{:.6g}", thickness[k]);
             console.result(row);
             continue;
         }
-        std::string text = fmt::format("at ({:.6g}, {:.6g}, {:.6g}), {:.3g} scene units from the point asked for\n", position.x,
-                                       position.y, position.z, closest->distance);
+        std::string text = fmt::format("at ({:.6g}, {:.6g}, {:.6g}), {:.3g} scene units from the point asked for\n",
+                                       position.x, position.y, position.z, closest->distance);
         for (std::size_t k = layers.size(); k-- > 0;)
             text += fmt::format("  {:<24} {:10.4f} µm\n", layers[k], thickness[k]);
         text += fmt::format("  {:<24} {:>10}\n", input.volume.metal(), "bulk");
-        text += fmt::format("  colour L*a*b* {:.1f} {:.1f} {:.1f} ({}), metallic {:.2f}, roughness {:.2f}", lab.x, lab.y, lab.z,
-                            srgbHex(Imath::V3d(look.baseColour)), look.metallic, look.flattenedRoughness);
+        text += fmt::format("  colour L*a*b* {:.1f} {:.1f} {:.1f} ({}), metallic {:.2f}, roughness {:.2f}", lab.x,
+                            lab.y, lab.z, srgbHex(Imath::V3d(look.baseColour)), look.metallic, look.flattenedRoughness);
         console.result(text);
     }
 }
@@ -129,7 +132,8 @@ void addProbeCommand(CLI::App& app, Options& options, Action& action) {
     CLI::App* command = app.add_subcommand("probe", "The stack at points: layers, µm, colour, roughness");
     auto arguments = std::make_shared<Arguments>();
     command->add_option("VOLUME", arguments->volume, "A .vdb that `run` wrote")->required();
-    command->add_option("MODEL", arguments->model, "The model it was made from (default: the .obj that `run` wrote beside it)");
+    command->add_option("MODEL", arguments->model,
+                        "The model it was made from (default: the .obj that `run` wrote beside it)");
     command->add_option("--at", arguments->at, "A point near the surface, scene units; may be given several times")
         ->allow_extra_args(false)
         ->type_name("X,Y,Z")

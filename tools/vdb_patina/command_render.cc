@@ -34,7 +34,8 @@ void addRenderCommand(CLI::App& app, Options& options, Action& action) {
     CLI::App* command = app.add_subcommand("render", "A picture of a volume");
     auto arguments = std::make_shared<Arguments>();
     command->add_option("VOLUME", arguments->volume, "A .vdb that `run` wrote")->required();
-    command->add_option("MODEL", arguments->model, "The model it was made from (default: the .obj that `run` wrote beside it)");
+    command->add_option("MODEL", arguments->model,
+                        "The model it was made from (default: the .obj that `run` wrote beside it)");
     addGeneralOptions(*command, options);
     addOutputOption(*command, options);
     addModelOptions(*command, options);

@@ -24,21 +24,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-double machineMemoryBytes() { return double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE)); }
+double machineMemoryBytes() {
+    return double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
+}
 
 void checkBudget(const Budget& budget, const Options& options, Console& console) {
     const double limit = options.budgetGiB > 0.0 ? options.budgetGiB * 1073741824.0 : 0.8 * machineMemoryBytes();
-    const std::string text =
-        fmt::format("budget: {:.3g} million voxels in the band, volume {}, peak memory {}, disk {}", budget.activeVoxels * 1e-6,
-                    readableBytes(budget.volumeBytes), readableBytes(budget.peakBytes), readableBytes(budget.diskBytes));
+    const std::string text = fmt::format(
+        "budget: {:.3g} million voxels in the band, volume {}, peak memory {}, disk {}", budget.activeVoxels * 1e-6,
+        readableBytes(budget.volumeBytes), readableBytes(budget.peakBytes), readableBytes(budget.diskBytes));
     if (options.dryRun)
         console.result(text);
     else
         console.notice(text);
     if (budget.peakBytes > limit && !options.force)
         throw Error(ExitCode::budget, "budget",
-                    fmt::format("the run needs about {}, {} are allowed; nothing was started", readableBytes(budget.peakBytes),
-                                readableBytes(limit)),
+                    fmt::format("the run needs about {}, {} are allowed; nothing was started",
+                                readableBytes(budget.peakBytes), readableBytes(limit)),
                     "use fewer --voxels or a smaller --resolution, allow more with --budget, or --force it");
 }
 
@@ -70,8 +72,8 @@ struct Task {
 };
 
 // Everything that can be wrong with script, model and both together is told here, before anything is written.
-Task prepare(const std::string& script, const std::string& modelName, const MaterialLibrary& materials, const Options& options,
-             Console& console) {
+Task prepare(const std::string& script, const std::string& modelName, const MaterialLibrary& materials,
+             const Options& options, Console& console) {
     CheckContext context = checkContext(materials, options);
     // Once without the model: a script's errors are told before a large model is read.
     Program program = readProgramFile(script, context);
@@ -115,12 +117,13 @@ void writeResults(const Task& task, const RunResult& result, const nlohmann::ord
         outputs.push_back("preview.png");
     }
     if (stack.unreadable > 1e-3)
-        console.notice(fmt::format("{:.2g} % of the model's surface lies inside other parts of it, or is thinner than a voxel, and has no layers",
+        console.notice(fmt::format("{:.2g} % of the model's surface lies inside other parts of it, or is thinner than "
+                                   "a voxel, and has no layers",
                                    stack.unreadable * 100.0));
     finishReport(report, console, outputs);
     writeTextFile(reportTo, report.dump(2) + "\n");
-    console.result(fmt::format("{}: {} layers, {:.3g} µm on average, {:.3g} µm at most; content hash {}", folder.string(),
-                               volume.layerCount(), stack.total.meanUm, stack.total.maxUm,
+    console.result(fmt::format("{}: {} layers, {:.3g} µm on average, {:.3g} µm at most; content hash {}",
+                               folder.string(), volume.layerCount(), stack.total.meanUm, stack.total.maxUm,
                                report["content_hash"].get<std::string>()));
 }
 
@@ -171,7 +174,8 @@ void runScript(const std::string& script, const std::string& modelName, const Op
     }
     for (auto& statement : describeStatements(result.statements))
         earlier.push_back(std::move(statement));
-    const std::string how = fmt::format("interrupted after {} of {} statements", result.finished, program.statements.size());
+    const std::string how =
+        fmt::format("interrupted after {} of {} statements", result.finished, program.statements.size());
     if (interruption.save(result, earlier, inputs))
         throw Error(ExitCode::interrupted, "run", how + "; what was finished is saved",
                     "the same command with --resume goes on from there");
@@ -208,7 +212,9 @@ void addRunCommand(CLI::App& app, Options& options, Action& action) {
     command->add_option("MODEL", arguments->model, "OBJ, PLY, STL or OFF file, or a shape of `make` (default: strip)");
     addGeneralOptions(*command, options);
     addOutputOption(*command, options);
-    command->add_option("--report", options.report, "Where the report goes (default: report.json in the folder)")->type_name("FILE")->group("Results");
+    command->add_option("--report", options.report, "Where the report goes (default: report.json in the folder)")
+        ->type_name("FILE")
+        ->group("Results");
     addModelOptions(*command, options);
     addVolumeOptions(*command, options);
     addMapOptions(*command, options);

@@ -36,7 +36,9 @@ Console::Console(const Options& options) : style_(chosen(options)) {
     log_->set_level(options.quiet ? spdlog::level::warn : options.verbose ? spdlog::level::debug : spdlog::level::info);
 }
 
-Console::~Console() { clearBar(); }
+Console::~Console() {
+    clearBar();
+}
 
 void Console::begin(const std::string& stage) {
     stage_ = stage;
@@ -71,7 +73,8 @@ void Console::end() {
 void Console::draw(double fraction) {
     constexpr int width = 24;
     const int full = static_cast<int>(std::clamp(fraction, 0.0, 1.0) * width);
-    writeError(fmt::format("\r\033[K[{}{}] {}", std::string(full, '#'), std::string(width - full, '.'), stage_.substr(0, 48)));
+    writeError(
+        fmt::format("\r\033[K[{}{}] {}", std::string(full, '#'), std::string(width - full, '.'), stage_.substr(0, 48)));
     barShown_ = true;
 }
 

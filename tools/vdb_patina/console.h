@@ -26,8 +26,8 @@ class Console : public Progress {
     void update(double fraction) override;
     void end() override;
 
-    void info(const std::string& text);    ///< said with -v
-    void notice(const std::string& text);  ///< said unless -q
+    void info(const std::string& text);   ///< said with -v
+    void notice(const std::string& text); ///< said unless -q
     void warning(const std::string& text);
     void error(const std::string& text);
     /// A result: to stdout.

@@ -16,9 +16,10 @@ ExistingVolume loadExisting(const std::string& volumeFile, const std::string& mo
     const std::string modelFile = modelName.empty() ? modelBeside(volumeFile) : modelName;
     Model model = loadModel(modelFile, options, &volume.scale(), console);
     if (!volume.provenance.modelHash.empty() && surfaceHash(model.surface) != volume.provenance.modelHash)
-        throw ModelError(modelFile,
-                         fmt::format("is not the model that '{}' was made from ('{}')", volumeFile, volume.provenance.model),
-                         "give the same model, with the same --subdivide, --scheme and --atlas");
+        throw ModelError(
+            modelFile,
+            fmt::format("is not the model that '{}' was made from ('{}')", volumeFile, volume.provenance.model),
+            "give the same model, with the same --subdivide, --scheme and --atlas");
     return {std::move(volume), std::move(model), MaterialLibrary::load(findDataFolder())};
 }
 

@@ -14,7 +14,8 @@ namespace fs = std::filesystem;
 InterruptedRun::InterruptedRun(const fs::path& folder, const std::string& name)
     : volumeFile_(folder / (name + ".interrupted.vdb")), stateFile_(folder / (name + ".interrupted.json")) {}
 
-bool InterruptedRun::save(const RunResult& result, const nlohmann::ordered_json& statements, const std::string& inputs) const {
+bool InterruptedRun::save(const RunResult& result, const nlohmann::ordered_json& statements,
+                          const std::string& inputs) const {
     if (!result.volume || result.finished == 0)
         return false;
     // The state names the volume's content: a volume of this run and a state of another are no pair.
@@ -30,8 +31,10 @@ bool InterruptedRun::save(const RunResult& result, const nlohmann::ordered_json&
 InterruptedRun::State InterruptedRun::load(const std::string& inputs) const {
     const std::string remedy = "start anew, without --resume";
     if (!fs::exists(stateFile_))
-        throw Error(ExitCode::commandLine, "--resume",
-                    fmt::format("there is no interrupted run of this script in '{}'", stateFile_.parent_path().string()), remedy);
+        throw Error(
+            ExitCode::commandLine, "--resume",
+            fmt::format("there is no interrupted run of this script in '{}'", stateFile_.parent_path().string()),
+            remedy);
     const auto state = nlohmann::ordered_json::parse(readTextFile(stateFile_), nullptr, false);
     const auto holds = [&](const char* key, bool (nlohmann::ordered_json::*is)() const noexcept) {
         return state.is_object() && state.contains(key) && (state[key].*is)();
@@ -41,7 +44,8 @@ InterruptedRun::State InterruptedRun::load(const std::string& inputs) const {
         !holds("finished", &Json::is_number_unsigned) || !holds("statements", &Json::is_array))
         throw RunError(stateFile_.string(), "is damaged", remedy);
     if (state["inputs"] != inputs)
-        throw Error(ExitCode::commandLine, "--resume", fmt::format("'{}' is of another script, model or options", stateFile_.string()),
+        throw Error(ExitCode::commandLine, "--resume",
+                    fmt::format("'{}' is of another script, model or options", stateFile_.string()),
                     "give those of the interrupted run, or " + remedy);
     State loaded{readVolume(volumeFile_), state["finished"].get<std::size_t>(), state["statements"]};
     if (contentHash(loaded.volume) != state["content_hash"])

@@ -36,7 +36,9 @@ extern "C" void onInterrupt(int signal) {
     std::signal(signal, SIG_DFL);
 }
 
-int exitStatus(ExitCode code) { return static_cast<int>(code); }
+int exitStatus(ExitCode code) {
+    return static_cast<int>(code);
+}
 
 int runAction(const Action& action, const Options& options) {
     std::optional<tbb::global_control> limit;
@@ -78,7 +80,8 @@ int runAction(const Action& action, const Options& options) {
 } // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app{"Weathers metal: grows, paints, erodes and polishes thin layers on a surface, and works out their light."};
+    CLI::App app{
+        "Weathers metal: grows, paints, erodes and polishes thin layers on a surface, and works out their light."};
     app.name("vdb-patina");
     app.formatter(helpLayout()); // before the commands, which inherit it
     app.set_help_flag("-h,--help", "Print this and end; behind a command: its own options");

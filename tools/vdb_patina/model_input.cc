@@ -47,8 +47,10 @@ void fitUvs(Mesh& mesh, const std::string& name, Console& console) {
         for (int i = 0; i < mesh.faceSizes[face]; ++i, ++corner) {
             const Imath::V2f uv = mesh.uvs[mesh.faceUvs[corner]];
             if (!(uv.x >= -tolerance && uv.x <= 1.f + tolerance && uv.y >= -tolerance && uv.y <= 1.f + tolerance))
-                throw ModelError(name, fmt::format("face {}: its UV ({:.5g}, {:.5g}) lies outside the unit square", face + 1, uv.x, uv.y),
-                                 "move the UVs into one tile, or replace them with --atlas");
+                throw ModelError(
+                    name,
+                    fmt::format("face {}: its UV ({:.5g}, {:.5g}) lies outside the unit square", face + 1, uv.x, uv.y),
+                    "move the UVs into one tile, or replace them with --atlas");
         }
     float furthest = 0.f;
     for (Imath::V2f& uv : mesh.uvs) {
@@ -62,13 +64,16 @@ void fitUvs(Mesh& mesh, const std::string& name, Console& console) {
 
 } // namespace
 
-Imath::V3d upVector(UpAxis up) { return up == UpAxis::y ? Imath::V3d(0, 1, 0) : Imath::V3d(0, 0, 1); }
+Imath::V3d upVector(UpAxis up) {
+    return up == UpAxis::y ? Imath::V3d(0, 1, 0) : Imath::V3d(0, 0, 1);
+}
 
 std::string modelBeside(const std::string& volumeFile) {
     const auto file = std::filesystem::path(volumeFile).replace_extension(".obj");
     std::error_code ignored;
     if (std::filesystem::exists(volumeFile, ignored) && !std::filesystem::exists(file, ignored))
-        throw Error(ExitCode::commandLine, volumeFile, fmt::format("there is no '{}' beside it", file.filename().string()),
+        throw Error(ExitCode::commandLine, volumeFile,
+                    fmt::format("there is no '{}' beside it", file.filename().string()),
                     "give the model that it was made from, behind the volume");
     return file.string();
 }
@@ -119,9 +124,9 @@ Model loadModel(const std::string& name, const Options& options, const VolumeSca
         console.warning(model.surface.note);
     const double um = model.scale.metresPerUnit * 1e6;
     const Imath::V3f size = model.surface.bounds().size();
-    console.notice(fmt::format("{}: {} × {} × {}, {} triangles, {}; voxels of {}", model.name, readableLength(size.x * um),
-                               readableLength(size.y * um), readableLength(size.z * um), model.surface.triangles.size(),
-                               model.surface.closed ? "closed" : "open, gets a back",
+    console.notice(fmt::format("{}: {} × {} × {}, {} triangles, {}; voxels of {}", model.name,
+                               readableLength(size.x * um), readableLength(size.y * um), readableLength(size.z * um),
+                               model.surface.triangles.size(), model.surface.closed ? "closed" : "open, gets a back",
                                readableLength(model.scale.voxelSize * um)));
     return model;
 }

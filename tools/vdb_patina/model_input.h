@@ -20,9 +20,9 @@ struct Model {
     std::string name;
 };
 
-/// Reads a file, or makes one of the shapes where `name` is one and no such file exists. Makes an atlas where the model has no UVs
-/// (or --atlas asks for one), and the limit surface at the volume's resolution.
-/// \param scale  of an existing volume; null: from the options
+/// Reads a file, or makes one of the shapes where `name` is one and no such file exists. Makes an atlas where the model
+/// has no UVs (or --atlas asks for one), and the limit surface at the volume's resolution. \param scale  of an existing
+/// volume; null: from the options
 Model loadModel(const std::string& name, const Options& options, const VolumeScale* scale, Console& console);
 
 Imath::V3d upVector(UpAxis up);

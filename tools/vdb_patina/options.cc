@@ -19,7 +19,9 @@ const std::map<std::string, ProgressStyle> progressStyles = {{"auto", ProgressSt
 
 } // namespace
 
-double Options::metresPerUnit() const { return *micrometresPerUnit(unit) * 1e-6; }
+double Options::metresPerUnit() const {
+    return *micrometresPerUnit(unit) * 1e-6;
+}
 
 std::map<std::string, std::string> Options::settingMap() const {
     std::map<std::string, std::string> map;
@@ -52,7 +54,8 @@ void addGeneralOptions(CLI::App& app, Options& options) {
 }
 
 void addOutputOption(CLI::App& app, Options& options) {
-    app.add_option("-o,--output", options.output, "Folder for the results, made if needed (default: named after the result)")
+    app.add_option("-o,--output", options.output,
+                   "Folder for the results, made if needed (default: named after the result)")
         ->type_name("DIR")
         ->group("Results");
 }
@@ -69,7 +72,8 @@ void addModelOptions(CLI::App& app, Options& options) {
         ->check(oneOf({"y", "z"}))
         ->type_name("AXIS")
         ->group(group);
-    app.add_option("--scheme", options.scheme, "Subdivision: automatic, none, catmull-clark or loop (default automatic)")
+    app.add_option("--scheme", options.scheme,
+                   "Subdivision: automatic, none, catmull-clark or loop (default automatic)")
         ->check(oneOf({"automatic", "none", "catmull-clark", "loop"}))
         ->type_name("NAME")
         ->group(group);
@@ -107,7 +111,8 @@ void addMapOptions(CLI::App& app, Options& options) {
         ->check(wholeNumberWithin(16, 32768))
         ->type_name("P")
         ->group(group);
-    app.add_flag("--keep-exaggeration", options.keepExaggeration, "Displacement as drawn in the volume, not real")->group(group);
+    app.add_flag("--keep-exaggeration", options.keepExaggeration, "Displacement as drawn in the volume, not real")
+        ->group(group);
     app.add_flag("--material-id", options.materialId, "Also bake material_id.exr")->group(group);
     app.add_option("--optics", options.optics, "conserving (default) or paper (its section 4.3 to the letter)")
         ->check(oneOf({"conserving", "paper"}))
@@ -141,7 +146,8 @@ void addRunOptions(CLI::App& app, Options& options) {
         ->type_name("NAME=VALUE")
         ->allow_extra_args(false)
         ->group(group);
-    app.add_option("--budget", options.budgetGiB, "Memory the run may take, GiB (default: four fifths of the machine's)")
+    app.add_option("--budget", options.budgetGiB,
+                   "Memory the run may take, GiB (default: four fifths of the machine's)")
         ->check(numberAboveZero())
         ->type_name("GIB")
         ->group(group);

@@ -16,8 +16,8 @@ enum class ProgressStyle { automatic, bar, plain, json, none };
 
 struct Options {
     // Where results go, and how much is said.
-    std::string output;  ///< folder; empty: one named after the result
-    std::string report;  ///< file; empty: report.json in the folder
+    std::string output; ///< folder; empty: one named after the result
+    std::string report; ///< file; empty: report.json in the folder
     ProgressStyle progress = ProgressStyle::automatic;
     bool verbose = false;
     bool quiet = false;

@@ -11,14 +11,17 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 Json describe(const LayerStatistics& layer) {
-    return {{"material", layer.material},         {"mean_um", layer.meanUm},     {"max_um", layer.maxUm},
-            {"coverage", layer.coverage},         {"rq_um", layer.roughnessUm},  {"volume_m3", layer.volumeM3}};
+    return {{"material", layer.material}, {"mean_um", layer.meanUm},    {"max_um", layer.maxUm},
+            {"coverage", layer.coverage}, {"rq_um", layer.roughnessUm}, {"volume_m3", layer.volumeM3}};
 }
 
 Json describe(const GrowthStatistics& growth) {
-    return {{"particles", growth.particles},         {"mean_layers", growth.mean},
-            {"interface_width_layers", growth.interfaceWidth}, {"skewness", growth.skewness},
-            {"coverage", growth.coverage},           {"density", growth.density},
+    return {{"particles", growth.particles},
+            {"mean_layers", growth.mean},
+            {"interface_width_layers", growth.interfaceWidth},
+            {"skewness", growth.skewness},
+            {"coverage", growth.coverage},
+            {"density", growth.density},
             {"patches", growth.patches}};
 }
 
