@@ -51,8 +51,13 @@ TEST(CommandLine, SaysWhatIsWrongAndEndsWith2) {
         {{"run", "a.patina", "-v", "-q"}, "exclude each other"},
         {{"materials", "cuprit_2"}, "did you mean 'cuprite_2'?"},
     };
-    for (const WrongLine& line : lines) {
-        const Outcome outcome = vdbPatina(line.words, folder.path());
+    std::vector<Arguments> words;
+    for (const WrongLine& line : lines)
+        words.push_back(line.words);
+    const std::vector<Outcome> outcomes = vdbPatinaEach(words, folder.path());
+    for (std::size_t i = 0; i < outcomes.size(); ++i) {
+        const WrongLine& line = lines[i];
+        const Outcome& outcome = outcomes[i];
         SCOPED_TRACE(testing::PrintToString(line.words));
         EXPECT_EQ(outcome.exitCode, 2);
         EXPECT_EQ(outcome.out, "");
@@ -67,19 +72,25 @@ TEST(CommandLine, HelpListsEveryCommandWithoutRequiredNoise) {
     const Outcome outcome = vdbPatina({"--help"}, folder.path());
     EXPECT_EQ(outcome.exitCode, 0);
     EXPECT_EQ(outcome.err, "");
-    for (const char* command :
-         {"run", "bake", "render", "probe", "info", "check", "materials", "make", "contact-sheet"}) {
-        EXPECT_THAT(outcome.out, HasSubstr(std::string("\n  ") + command + " "));
-        const Outcome help = vdbPatina({command, "--help"}, folder.path());
+    const std::vector<std::string> commands{"run",   "bake",      "render", "probe",        "info",
+                                            "check", "materials", "make",   "contact-sheet"};
+    std::vector<Arguments> lines;
+    for (const std::string& command : commands)
+        lines.push_back({command, "--help"});
+    const std::vector<Outcome> helps = vdbPatinaEach(lines, folder.path());
+    for (std::size_t i = 0; i < commands.size(); ++i) {
+        const std::string& command = commands[i];
+        const Outcome& help = helps[i];
+        EXPECT_THAT(outcome.out, HasSubstr("\n  " + command + " "));
         EXPECT_EQ(help.exitCode, 0) << command;
-        EXPECT_THAT(help.out, HasSubstr(std::string("Usage: vdb-patina ") + command + " [options]"));
+        EXPECT_THAT(help.out, HasSubstr("Usage: vdb-patina " + command + " [options]"));
         for (const char* noise : {"REQUIRED", "Excludes", "->", " INT", "TEXT:", "\n\n\n"})
             EXPECT_THAT(help.out, Not(HasSubstr(noise))) << command;
-        std::istringstream lines(help.out);
-        for (std::string line; std::getline(lines, line);)
+        std::istringstream text(help.out);
+        for (std::string line; std::getline(text, line);)
             EXPECT_LE(line.size(), 130u) << line;
     }
-    EXPECT_EQ(vdbPatina({"help", "run"}, folder.path()).out, vdbPatina({"run", "--help"}, folder.path()).out);
+    EXPECT_EQ(vdbPatina({"help", "run"}, folder.path()).out, helps.front().out);
 }
 
 TEST(CommandLine, HelpNamesTheOptionsOfTheManual) {

@@ -5,9 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <array>
+#include <cstdint>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 namespace patina::test {
 
@@ -96,25 +98,41 @@ TEST_F(ModelErrors, EndWith4NameThePlaceAndLeaveNothing) {
         {"scene.fbx", "Kaydara FBX Binary", "scene.fbx"},
         {"uv.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 3 0\nvt 0 1\nf 1/1 2/2 3/3\n", "uv.obj: face 1"},
     };
+    std::vector<Arguments> lines;
     for (const auto& model : models) {
-        SCOPED_TRACE(model.file);
         folder.file(model.file, model.content);
-        const Outcome outcome = run(model.file);
+        lines.push_back(small({"run", "a.patina", model.file, "-o", "out"}));
+    }
+    const std::vector<Outcome> outcomes = vdbPatinaEach(lines, folder.path());
+    for (std::size_t i = 0; i < outcomes.size(); ++i) {
+        const auto& model = models[i];
+        const Outcome& outcome = outcomes[i];
+        SCOPED_TRACE(model.file);
         EXPECT_EQ(outcome.exitCode, 4) << outcome.err;
         EXPECT_EQ(outcome.out, "");
         EXPECT_THAT(outcome.err, HasSubstr(std::string("error: ") + model.place));
         EXPECT_THAT(outcome.err, testing::EndsWith(")\n")) << "the remedy stands in brackets";
-        EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
     }
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
 }
 
 TEST_F(ModelErrors, AModelThatIsNoneIsToldFromAShapeMisspelt) {
-    EXPECT_THAT(run("statuete").err, HasSubstr("did you mean 'statuette'?"));
-    EXPECT_THAT(run("elephant").err, HasSubstr("shapes are plate, strip"));
-    EXPECT_THAT(run("nosuch.obj").err, HasSubstr("error: nosuch.obj: there is no such file"));
-    EXPECT_THAT(run(".").err, HasSubstr("this is a folder"));
-    for (const char* model : {"statuete", "elephant", "nosuch.obj", "."})
-        EXPECT_EQ(run(model).exitCode, 4) << model;
+    const std::pair<const char*, const char*> models[] = {{"statuete", "did you mean 'statuette'?"},
+                                                          {"elephant", "shapes are plate, strip"},
+                                                          {"nosuch.obj", "error: nosuch.obj: there is no such file"},
+                                                          {".", "this is a folder"}};
+    for (const auto& [model, says] : models) {
+        const Outcome outcome = run(model);
+        EXPECT_EQ(outcome.exitCode, 4) << model;
+        EXPECT_THAT(outcome.err, HasSubstr(says));
+    }
+}
+
+TEST_F(ModelErrors, AVoxelLargerThanTheModelIsAWrongCommandLine) {
+    const Outcome outcome = vdbPatina({"run", "a.patina", "strip", "--voxel-size", "5", "-o", "out"}, folder.path());
+    EXPECT_EQ(outcome.exitCode, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("error: --voxel-size: the model's longest side of 0.3 scene units"));
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
 }
 
 TEST_F(ModelErrors, NoneForACubeInStl) {

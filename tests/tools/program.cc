@@ -12,6 +12,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
@@ -167,6 +168,18 @@ Outcome RunningProgram::finish() {
 
 Outcome vdbPatina(const Arguments& arguments, const fs::path& folder, const std::string& input) {
     return RunningProgram(arguments, folder, false, input).finish();
+}
+
+std::vector<Outcome> vdbPatinaEach(const std::vector<Arguments>& lines, const fs::path& folder) {
+    std::vector<Outcome> outcomes(lines.size());
+    std::unique_ptr<RunningProgram> before;
+    for (std::size_t i = 0; i <= lines.size(); ++i) {
+        auto next = i < lines.size() ? std::make_unique<RunningProgram>(lines[i], folder) : nullptr;
+        if (before)
+            outcomes[i - 1] = before->finish();
+        before = std::move(next);
+    }
+    return outcomes;
 }
 
 Arguments small(Arguments arguments) {

@@ -68,6 +68,9 @@ class RunningProgram {
 /// Runs vdb-patina to its end, in a folder.
 Outcome vdbPatina(const Arguments& arguments, const std::filesystem::path& folder, const std::string& input = {});
 
+/// Several in the same folder, two at a time: loading the program's libraries takes longer than a wrong command line.
+std::vector<Outcome> vdbPatinaEach(const std::vector<Arguments>& lines, const std::filesystem::path& folder);
+
 /// Adds the options that make a run take about a second, those that are there excepted.
 Arguments small(Arguments arguments);
 

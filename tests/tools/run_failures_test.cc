@@ -78,10 +78,13 @@ TEST_F(RunFailures, AFolderWithoutPermissionIsOne) {
 }
 
 TEST_F(RunFailures, AReportThatCannotBeWrittenIsOneBeforeAnythingRuns) {
-    const Outcome outcome = run("out", {"--report", "nowhere/report.json"});
-    EXPECT_EQ(outcome.exitCode, 1);
-    EXPECT_THAT(outcome.err, HasSubstr("nowhere"));
-    EXPECT_FALSE(outcome.saysOnError("s  new copper"));
+    fs::create_directory(folder.path() / "folder");
+    for (const char* report : {"nowhere/report.json", "folder"}) {
+        const Outcome outcome = run("out", {"--report", report});
+        EXPECT_EQ(outcome.exitCode, 1);
+        EXPECT_THAT(outcome.err, HasSubstr(std::string("error: ") + fs::path(report).begin()->string()));
+        EXPECT_FALSE(outcome.saysOnError("s  new copper"));
+    }
 }
 
 TEST_F(RunFailures, AFullDiskLeavesNothingHalfWritten) {
@@ -152,16 +155,20 @@ TEST_F(RunFailures, ADamagedVolumeIsOne) {
     folder.file("empty.vdb", "");
     folder.file("text.vdb", "not a volume\n");
     folder.file("open.patina", "open \"truncated.vdb\"\ncoat soot 1\n");
-    for (const Arguments& words :
-         {Arguments{"info", "truncated.vdb"}, Arguments{"info", "flipped.vdb"}, Arguments{"info", "empty.vdb"},
-          Arguments{"info", "text.vdb"}, Arguments{"bake", "truncated.vdb", "strip", "-o", "baked"},
-          Arguments{"render", "flipped.vdb", "strip", "-o", "baked"},
-          Arguments{"probe", "truncated.vdb", "strip", "--at", "0,0,0"}}) {
-        SCOPED_TRACE(testing::PrintToString(words));
-        const Outcome outcome = vdbPatina(words, folder.path());
+    const std::vector<Arguments> lines{Arguments{"info", "truncated.vdb"},
+                                       Arguments{"info", "flipped.vdb"},
+                                       Arguments{"info", "empty.vdb"},
+                                       Arguments{"info", "text.vdb"},
+                                       Arguments{"bake", "truncated.vdb", "strip", "-o", "baked"},
+                                       Arguments{"render", "flipped.vdb", "strip", "-o", "baked"},
+                                       Arguments{"probe", "truncated.vdb", "strip", "--at", "0,0,0"}};
+    const std::vector<Outcome> outcomes = vdbPatinaEach(lines, folder.path());
+    for (std::size_t i = 0; i < outcomes.size(); ++i) {
+        const Outcome& outcome = outcomes[i];
+        SCOPED_TRACE(testing::PrintToString(lines[i]));
         EXPECT_EQ(outcome.exitCode, 1);
         EXPECT_EQ(outcome.out, "");
-        EXPECT_THAT(outcome.err, HasSubstr("error: " + words[1] + ": is damaged"));
+        EXPECT_THAT(outcome.err, HasSubstr("error: " + lines[i][1] + ": is damaged"));
     }
     EXPECT_EQ(vdbPatina(small({"run", "open.patina", "strip", "-o", "baked"}), folder.path()).exitCode, 1);
     EXPECT_FALSE(fs::exists(folder.path() / "baked"));

@@ -60,13 +60,20 @@ TEST(ScriptErrors, NameThePlaceAndEndWith3) {
          "coat soot 1 moss(3mm)\n",
          {":2:1: error: ", ":3:13: error: "}},
     };
+    std::vector<Arguments> lines;
     for (const WrongScript& script : scripts) {
+        const std::string name = "wrong" + std::to_string(lines.size()) + ".patina";
+        folder.file(name, script.text);
+        lines.push_back(small({"run", name, "strip", "-o", "out"}));
+    }
+    const std::vector<Outcome> outcomes = vdbPatinaEach(lines, folder.path());
+    for (std::size_t i = 0; i < outcomes.size(); ++i) {
+        const WrongScript& script = scripts[i];
+        const Outcome& outcome = outcomes[i];
         SCOPED_TRACE(script.text);
-        folder.file("wrong.patina", script.text);
-        const Outcome outcome = vdbPatina(small({"run", "wrong.patina", "strip", "-o", "out"}), folder.path());
         EXPECT_EQ(outcome.exitCode, 3);
         EXPECT_EQ(outcome.out, "");
-        EXPECT_THAT(outcome.err, HasSubstr("wrong.patina"));
+        EXPECT_THAT(outcome.err, HasSubstr(lines[i][1]));
         for (const char* words : script.says)
             EXPECT_THAT(outcome.err, HasSubstr(words));
         EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
@@ -91,6 +98,16 @@ TEST(ScriptErrors, WordsOfTheLanguageThatThisVersionCannotRunAreSome) {
                               "later.patina:6:13: error: 'wetness' is not there yet in this version"})
         EXPECT_THAT(outcome.err, HasSubstr(error));
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+}
+
+TEST(ScriptErrors, WarningsAreNone) {
+    const TemporaryFolder folder;
+    folder.file("a.patina", "param unused = 3\nnew copper\ncoat soot 1\n");
+    const Outcome outcome = vdbPatina({"check", "a.patina"}, folder.path());
+    EXPECT_EQ(outcome.exitCode, 0);
+    EXPECT_EQ(outcome.out, "a.patina: 2 statements, no errors\n");
+    EXPECT_THAT(outcome.err,
+                testing::StartsWith("a.patina:1:7: warning: 'unused' is never used\n    param unused = 3\n"));
 }
 
 TEST(ScriptErrors, UnknownParameterIsOne) {
@@ -118,16 +135,16 @@ TEST(ScriptErrors, ScriptThatCannotBeReadEndsWith1) {
 
 TEST(ScriptErrors, EveryShippedScriptIsFreeOfThem) {
     const TemporaryFolder folder;
-    int count = 0;
+    std::vector<Arguments> lines;
     for (const auto& entry : std::filesystem::directory_iterator(PATINA_SOURCE_DIR "/data/scripts")) {
-        if (entry.path().extension() != ".patina")
-            continue;
-        ++count;
-        const Outcome outcome = vdbPatina({"check", entry.path().string()}, folder.path());
+        if (entry.path().extension() == ".patina")
+            lines.push_back({"check", entry.path().string()});
+    }
+    EXPECT_GE(lines.size(), 3u);
+    for (const Outcome& outcome : vdbPatinaEach(lines, folder.path())) {
         EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
         EXPECT_THAT(outcome.out, HasSubstr("statements, no errors"));
     }
-    EXPECT_GE(count, 3);
 }
 
 } // namespace

@@ -215,25 +215,34 @@ struct Extent {
 TEST(Make, WritesEveryShapeUprightOnTheGround) {
     const TemporaryFolder folder;
     folder.file("a.patina", "new copper\n");
-    for (const char* shape : {"plate", "strip", "sphere", "groove", "tower", "statuette"}) {
+    const std::vector<std::string> shapes{"plate", "strip", "sphere", "groove", "tower", "statuette"};
+    std::vector<Arguments> makes, checks;
+    for (const std::string& shape : shapes) {
+        makes.push_back({"make", shape, "-o", "shapes"});
+        checks.push_back({"check", "a.patina", "shapes/" + shape + ".obj", "--voxels", "32"});
+    }
+    const std::vector<Outcome> made = vdbPatinaEach(makes, folder.path());
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        const std::string& shape = shapes[i];
+        const Outcome& outcome = made[i];
         SCOPED_TRACE(shape);
-        const std::string file = std::string("shapes/") + shape + ".obj";
-        const Outcome outcome = vdbPatina({"make", shape, "-o", "shapes"}, folder.path());
+        const std::string file = "shapes/" + shape + ".obj";
         ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
         EXPECT_THAT(outcome.out, testing::StartsWith(file + ": "));
         const Extent extent(readFile(folder.path() / file));
         EXPECT_GT(extent.faces, 0);
         EXPECT_GT(extent.uvs, 0);
         EXPECT_NEAR(extent.lowest[1], 0.0, 2e-4) << "y is up, and it stands on y = 0";
-        if (std::string(shape) == "tower" || std::string(shape) == "statuette") {
+        if (shape == "tower" || shape == "statuette") {
             EXPECT_GT(extent.side(1), std::max(extent.side(0), extent.side(2)));
         }
-        if (std::string(shape) == "plate" || std::string(shape) == "strip") {
+        if (shape == "plate" || shape == "strip") {
             EXPECT_NEAR(extent.side(1), 0.0, 1e-6);
         }
-        // The program reads what it writes.
-        EXPECT_EQ(vdbPatina({"check", "a.patina", file, "--voxels", "32"}, folder.path()).exitCode, 0);
     }
+    // The program reads what it writes.
+    for (const Outcome& outcome : vdbPatinaEach(checks, folder.path()))
+        EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
     EXPECT_EQ(vdbPatina({"make", "sphere"}, folder.path()).out.substr(0, 12), "./sphere.obj");
 }
 

@@ -84,14 +84,17 @@ Task prepare(const std::string& script, const std::string& modelName, const Mate
         context.vertexAttributes->push_back(attribute.first);
     program = readProgramFile(script, context);
     for (const Diagnostic& warning : program.warnings)
-        console.warning(warning.text());
+        console.warning(warning);
     return {std::move(program), std::move(model)};
 }
 
 fs::path reportFile(const Options& options, const fs::path& folder) {
     if (options.report.empty())
         return folder / "report.json";
-    const AtomicFile writable(options.report); // not only found out when all is done
+    // Not only found out when all is done.
+    if (fs::is_directory(options.report))
+        throw RunError(options.report, "is a folder", "--report takes the name of a file");
+    const AtomicFile writable(options.report);
     return options.report;
 }
 
@@ -187,7 +190,7 @@ void checkScript(const std::string& script, const std::string& modelName, Option
     if (modelName.empty()) {
         const Program program = readProgramFile(script, checkContext(materials, options));
         for (const Diagnostic& warning : program.warnings)
-            console.warning(warning.text());
+            console.warning(warning);
         console.result(fmt::format("{}: {} statements, no errors", program.file, program.statements.size()));
         return;
     }

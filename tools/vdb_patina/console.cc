@@ -100,6 +100,12 @@ void Console::warning(const std::string& text) {
     log_->warn(text);
 }
 
+void Console::warning(const Diagnostic& finding) {
+    clearBar();
+    warnings_.push_back(finding.text());
+    writeError(finding.text() + "\n");
+}
+
 void Console::error(const std::string& text) {
     clearBar();
     log_->error(text);

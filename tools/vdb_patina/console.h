@@ -1,6 +1,7 @@
 #pragma once
 // All that the program says: results to stdout, everything else to stderr.
 
+#include "base/errors.h"
 #include "base/progress.h"
 #include "options.h"
 
@@ -29,6 +30,8 @@ class Console : public Progress {
     void info(const std::string& text);   ///< said with -v
     void notice(const std::string& text); ///< said unless -q
     void warning(const std::string& text);
+    /// A finding with a place of its own, said as it stands: "file:3:1: warning: …".
+    void warning(const Diagnostic& finding);
     void error(const std::string& text);
     /// A result: to stdout.
     void result(const std::string& text);

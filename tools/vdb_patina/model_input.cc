@@ -18,6 +18,8 @@ namespace patina::tool {
 
 namespace {
 
+constexpr double fewestVoxels = 8.0; // as --voxels
+
 SubdivisionScheme schemeNamed(const std::string& name) {
     if (name == "none")
         return SubdivisionScheme::none;
@@ -116,6 +118,11 @@ Model loadModel(const std::string& name, const Options& options, const VolumeSca
         model.scale.metresPerUnit = options.metresPerUnit();
         model.scale.exaggeration = options.exaggeration;
         model.scale.voxelSize = options.voxelSize > 0.0 ? options.voxelSize : model.longestSide / options.voxels;
+        if (model.longestSide < fewestVoxels * model.scale.voxelSize)
+            throw Error(ExitCode::commandLine, "--voxel-size",
+                        fmt::format("the model's longest side of {:.4g} scene units would be {:.2g} voxels",
+                                    model.longestSide, model.longestSide / model.scale.voxelSize),
+                        fmt::format("give {:.2g} or less, or use --voxels", model.longestSide / 64.0));
     }
     limit.level = options.subdivide;
     limit.targetEdge = 1.5 * model.scale.voxelSize;
