@@ -35,12 +35,20 @@ void paste(Image& sheet, const Image& picture, int left, int top) {
         std::copy_n(picture.at(0, y), std::size_t(picture.width) * 3, sheet.at(left, top + y));
 }
 
+// OpenImageIO 2.4 loses the upper bits of characters of two bytes: "µm" would read "5m".
+std::string drawable(std::string text) {
+    for (std::size_t at; (at = text.find("µ")) != std::string::npos;)
+        text.replace(at, 2, "u");
+    return text;
+}
+
 } // namespace
 
-bool drawText(Image& image, const std::string& text, float x, float y, int height, const Imath::V3f& ink,
+bool drawText(Image& image, const std::string& words, float x, float y, int height, const Imath::V3f& ink,
               TextAlign align, float maxWidth) {
-    if (text.empty())
+    if (words.empty())
         return true;
+    const std::string text = drawable(words);
     const std::string font = findFont();
     if (font.empty())
         return false;

@@ -4,6 +4,7 @@
 #include "console.h"
 #include "existing_volume.h"
 #include "outputs.h"
+#include "point_text.h"
 
 #include "base/atomic_file.h"
 #include "base/errors.h"
@@ -32,17 +33,6 @@ struct Arguments {
     bool csv = false;
 };
 
-std::optional<Imath::V3d> pointIn(std::string text) {
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
-    std::istringstream in(text);
-    Imath::V3d p;
-    std::string more;
-    if (!(in >> p.x >> p.y >> p.z) || in >> more || !std::isfinite(p.x + p.y + p.z))
-        return std::nullopt;
-    return p;
-}
-
 // Empty lines, comments and a head line are no points.
 void readPoints(std::istream& in, const std::string& place, std::vector<Imath::V3d>& points) {
     std::string line;
@@ -50,7 +40,7 @@ void readPoints(std::istream& in, const std::string& place, std::vector<Imath::V
         const std::size_t first = line.find_first_not_of(" \t\r");
         if (first == std::string::npos || line[first] == '#')
             continue;
-        if (const auto point = pointIn(line))
+        if (const auto point = pointInText(line))
             points.push_back(*point);
         else if (number > 1 || std::isalpha(static_cast<unsigned char>(line[first])) == 0)
             throw RunError(fmt::format("{}:{}", place, number), fmt::format("'{}' is not a point", line),
@@ -61,7 +51,7 @@ void readPoints(std::istream& in, const std::string& place, std::vector<Imath::V
 std::vector<Imath::V3d> pointsOf(const Arguments& arguments) {
     std::vector<Imath::V3d> points;
     for (const std::string& text : arguments.at) {
-        const auto point = pointIn(text);
+        const auto point = pointInText(text);
         if (!point)
             throw Error(ExitCode::commandLine, "--at", fmt::format("'{}' is not a point", text),
                         "a point has three coordinates, as in --at 0.1,0.2,0.05");
