@@ -303,7 +303,7 @@ std::optional<Expression> ExpressionChecker::texture(const SyntaxExpression& syn
         std::optional<GrowthCall> growth = GrowthChecker(*this).resolve(first);
         if (!growth)
             return std::nullopt;
-        growth->ofFull = first.ofFull || syntax.ofFull;
+        growth->ofFull = first.ofFull || syntax.ofFull || growth->since > 0;
         Expression out = node(Kind::growth, syntax);
         out.growth = std::make_shared<const GrowthCall>(std::move(*growth));
         return out;

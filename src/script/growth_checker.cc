@@ -105,6 +105,12 @@ std::optional<GrowthCall> GrowthChecker::resolve(const SyntaxExpression& syntax)
     }
     if (good)
         good = moment(out, syntax.children[given["step"]].offset, syntax.children[given["total"]].offset);
+    if (good && out.since >= out.step) {
+        findings.error(syntax.children[given["since"]].offset,
+                       fmt::format("step {} does not come after step {}", out.step, out.since),
+                       "since=N is an earlier step of the same history");
+        good = false;
+    }
     return good ? std::optional<GrowthCall>(std::move(out)) : std::nullopt;
 }
 
@@ -113,7 +119,7 @@ bool GrowthChecker::argument(const SyntaxExpression& syntax, std::size_t index, 
     const SyntaxWord& name = syntax.argumentNames[index];
     const SyntaxExpression& value = syntax.children[index];
     static const std::vector<std::string> known = {"rate",  "step",    "total", "cell",    "arrival", "from",
-                                                   "reach", "blocked", "patch", "seeding", "points"};
+                                                   "reach", "blocked", "patch", "seeding", "points", "since"};
     if (!vocabulary::contains(known, name.text)) {
         std::string remedy = didYouMean(name.text, known);
         if (remedy.empty())
@@ -149,6 +155,12 @@ bool GrowthChecker::argument(const SyntaxExpression& syntax, std::size_t index, 
         const auto number = expressions_.wholeNumber(value, "the " + name.text, 1, largestTotal);
         if (number)
             (name.text == "step" ? out.step : out.total) = static_cast<int>(*number);
+        return number.has_value();
+    }
+    if (name.text == "since") {
+        const auto number = expressions_.wholeNumber(value, "the step since when", 0, largestTotal);
+        if (number)
+            out.since = static_cast<int>(*number);
         return number.has_value();
     }
     if (name.text == "cell")

@@ -197,6 +197,14 @@ ThicknessMapPtr MapBuilder::buildGrowth(const GrowthCall& call, Progress& progre
     }
     GrowthPattern pattern = grow(cells, options, context_.seed, call.label, &progress);
     statistics_.push_back(pattern.statistics);
+    if (call.since > 0) {
+        // One history: the earlier step is part of the later one, and no cell has fallen since.
+        GrowthOptions earlier = options;
+        earlier.step = call.since;
+        const GrowthPattern before = grow(cells, earlier, context_.seed, call.label, &progress);
+        std::transform(pattern.factor.begin(), pattern.factor.end(), before.factor.begin(), pattern.factor.begin(),
+                       [](float now, float then) { return std::max(0.f, now - then); });
+    }
     return std::make_shared<GrowthMap>(cells, pattern.factor, context_.voxelSize);
 }
 

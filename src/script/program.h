@@ -62,6 +62,7 @@ struct GrowthCall {
     int step = 1;      ///< 0 … total
     int total = 1;
     bool ofFull = false; ///< `of full`: normalised at the last step, not at its own
+    int since = 0;       ///< what has grown since this step, below `step`; above 0, ofFull is set
 
     /// The random key: the statement's label; the second growth of one statement has "/2" behind it, and so on.
     std::string label;

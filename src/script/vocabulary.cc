@@ -84,7 +84,7 @@ const std::vector<std::string>& growthRates() {
 std::vector<std::string> growthArguments(std::string_view model) {
     if (!contains(growthModels(), model))
         return {};
-    std::vector<std::string> names = {"rate", "step", "total", "cell"};
+    std::vector<std::string> names = {"rate", "step", "total", "since", "cell"};
     const auto add = [&names](std::initializer_list<std::string> more) { names.insert(names.end(), more); };
     if (model == "ST")
         add({"points"});

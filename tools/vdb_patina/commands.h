@@ -20,6 +20,7 @@ void addProbeCommand(CLI::App& app, Options& options, Action& action);
 void addInfoCommand(CLI::App& app, Options& options, Action& action);
 void addMakeCommand(CLI::App& app, Options& options, Action& action);
 void addMaterialsCommand(CLI::App& app, Options& options, Action& action);
+void addWeatherCommand(CLI::App& app, Options& options, Action& action);
 void addSliceCommand(CLI::App& app, Options& options, Action& action);
 void addContactSheetCommand(CLI::App& app, Options& options, Action& action);
 

@@ -94,6 +94,7 @@ int main(int argc, char** argv) {
     addBakeCommand(app, options, action);
     addRenderCommand(app, options, action);
     addProbeCommand(app, options, action);
+    addWeatherCommand(app, options, action);
     addSliceCommand(app, options, action);
     addInfoCommand(app, options, action);
     addCheckCommand(app, options, action);

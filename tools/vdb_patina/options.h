@@ -38,6 +38,7 @@ struct Options {
 
     // The maps and the picture.
     int resolution = 1024;
+    bool bakeMaps = true;
     bool keepExaggeration = false;
     bool materialId = false;
     std::string optics = "conserving";

@@ -114,7 +114,8 @@ void writeResults(const Task& task, const RunResult& result, const nlohmann::ord
     const StackOptics optics = opticsOf(volume, materials, options);
     const StackStatistics stack = measureStack(volume, task.model.surface);
     nlohmann::ordered_json report = makeReport(task.program, task.model, options, result, stack, earlier);
-    addMapsToReport(report, writeMaps(volume, task.model, optics, options, folder, outputs, console));
+    if (options.bakeMaps)
+        addMapsToReport(report, writeMaps(volume, task.model, optics, options, folder, outputs, console));
     writeMeshes(task.model, name, folder, outputs, console);
     if (options.pictureSize > 0) {
         writePicture(volume, task.model, optics, options, folder / "preview.png", console);

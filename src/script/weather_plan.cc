@@ -1,0 +1,264 @@
+#include "script/weather_plan.h"
+
+#include "base/atomic_file.h"
+#include "base/errors.h"
+#include "base/names.h"
+#include "optics/toml_reader.h"
+#include "script/vocabulary.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace patina {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double paperYears = 20.0; // "almost negligible rate after about 20 years"
+constexpr double isoYears = 20.0;
+
+class PlanReader {
+  public:
+    PlanReader(const fs::path& path, std::vector<Diagnostic>& findings)
+        : reader_(path, path.parent_path(), findings), findings_(findings) {
+        const std::string text = readTextFile(path.string());
+        reader_.setText(text);
+        try {
+            table_ = toml::parse(text, path.string());
+        } catch (const toml::parse_error& error) {
+            reader_.error(reader_.placeOf(error.source().begin), std::string(error.description()));
+        }
+    }
+
+    const toml::table& table() const { return table_; }
+    TomlReader& reader() { return reader_; }
+
+    double needed(const toml::table& table, const char* key, double least, double most) {
+        if (!table.get(key))
+            reader_.error(reader_.placeOf(table), fmt::format("'{}' is missing", key));
+        return reader_.number(table, key, least, most).value_or(least);
+    }
+
+    std::string neededWord(const toml::table& table, const char* key) {
+        if (!table.get(key))
+            reader_.error(reader_.placeOf(table), fmt::format("'{}' is missing", key));
+        return reader_.word(table, key);
+    }
+
+    std::pair<double, double> range(const toml::table& table, const char* key, double most) {
+        std::vector<double> values;
+        if (reader_.numbers(table, key, values, nullptr) &&
+            (values.size() != 2 || !(values[0] >= 0.0) || !(values[1] >= values[0]) || values[1] > most))
+            reader_.error(*table.get(key),
+                          fmt::format("'{}' must be two numbers, the smaller one first, 0 to {:g}", key, most));
+        return values.size() == 2 ? std::make_pair(values[0], values[1]) : std::make_pair(0.0, 0.0);
+    }
+
+    WeatherPattern pattern(const toml::table& table) {
+        WeatherPattern out;
+        out.model = neededWord(table, "pattern");
+        if (table.get("pattern") && !vocabulary::contains(vocabulary::growthModels(), out.model))
+            reader_.error(*table.get("pattern"), fmt::format("unknown growth model '{}'", out.model),
+                          fmt::format("the models are {}", vocabulary::listed(vocabulary::growthModels())));
+        out.total = static_cast<int>(needed(table, "total", 1, 1000));
+        out.even = needed(table, "even", 0.0, 1.0);
+        out.map = reader_.word(table, "map");
+        return out;
+    }
+
+    // The tables of an array such as [[oxide]].
+    template <typename Read>
+    void each(const char* key, const std::vector<std::string>& keys, Read read) {
+        const toml::node* node = table_.get(key);
+        if (!node)
+            return;
+        const toml::array* array = node->as_array();
+        if (!array) {
+            reader_.error(*node, fmt::format("'{0}' must be tables headed [[{0}]]", key));
+            return;
+        }
+        for (const toml::node& entry : *array)
+            if (const toml::table* one = entry.as_table()) {
+                reader_.allowOnly(*one, keys);
+                read(*one);
+            }
+    }
+
+  private:
+    TomlReader reader_;
+    std::vector<Diagnostic>& findings_;
+    toml::table table_;
+};
+
+void readLayers(PlanReader& file, WeatherPlan& plan) {
+    file.each("oxide", {"material", "thickness_um", "years", "pattern", "total", "even", "map"},
+              [&](const toml::table& table) {
+                  WeatherOxide oxide;
+                  oxide.material = file.neededWord(table, "material");
+                  oxide.thicknessUm = file.needed(table, "thickness_um", 0.0, 1e4);
+                  oxide.years = file.needed(table, "years", 1e-3, 1e4);
+                  oxide.pattern = file.pattern(table);
+                  plan.oxides.push_back(oxide);
+              });
+    file.each("mineral", {"material", "begins", "share", "pattern", "total", "even", "map"},
+              [&](const toml::table& table) {
+                  WeatherMineral mineral;
+                  mineral.material = file.neededWord(table, "material");
+                  mineral.begins = file.range(table, "begins", 1e4);
+                  mineral.share = file.reader().number(table, "share", 0.0, 1.0).value_or(1.0);
+                  mineral.pattern = file.pattern(table);
+                  plan.minerals.push_back(mineral);
+              });
+}
+
+void readEvents(PlanReader& file, WeatherPlan& plan) {
+    file.each("conversion", {"from", "to", "half_life_years", "begins"}, [&](const toml::table& table) {
+        WeatherConversion conversion;
+        conversion.from = file.neededWord(table, "from");
+        conversion.to = file.neededWord(table, "to");
+        conversion.halfLifeYears = file.needed(table, "half_life_years", 1e-3, 1e6);
+        conversion.begins = file.reader().number(table, "begins", 0.0, 1e4).value_or(0.0);
+        plan.conversions.push_back(conversion);
+    });
+    file.each("wear", {"um_per_year", "begins", "map"}, [&](const toml::table& table) {
+        WeatherWear wear;
+        wear.umPerYear = file.needed(table, "um_per_year", 0.0, 1e4);
+        wear.begins = file.reader().number(table, "begins", 0.0, 1e4).value_or(0.0);
+        wear.map = file.reader().word(table, "map");
+        plan.wear.push_back(wear);
+    });
+    file.each("deposit", {"material", "um_per_year", "begins", "pattern", "total", "even", "map"},
+              [&](const toml::table& table) {
+                  WeatherDeposit deposit;
+                  deposit.material = file.neededWord(table, "material");
+                  deposit.umPerYear = file.needed(table, "um_per_year", 0.0, 1e4);
+                  deposit.begins = file.reader().number(table, "begins", 0.0, 1e4).value_or(0.0);
+                  deposit.pattern = file.pattern(table);
+                  plan.deposits.push_back(deposit);
+              });
+}
+
+void readKinetics(const fs::path& path, const std::string& metal, const std::string& asked, WeatherPlan& plan,
+                  std::vector<Diagnostic>& findings) {
+    PlanReader file(path, findings);
+    const toml::node* node = file.table().get(metal);
+    const toml::table* table = node ? node->as_table() : nullptr;
+    if (!table) {
+        file.reader().error(SourcePlace{path.string(), 1, 1}, fmt::format("there are no kinetics of '{}'", metal),
+                            fmt::format("'{}' asks for them", asked));
+        return;
+    }
+    plan.exponent = file.needed(*table, "exponent", 0.0, 2.0);
+    if (const toml::table* years = file.reader().subtable(*table, "first_year_um"))
+        for (const auto& entry : *years)
+            plan.firstYearUm[std::string(entry.first.str())] =
+                file.range(*years, std::string(entry.first.str()).c_str(), 1e5);
+}
+
+} // namespace
+
+std::vector<std::string> weatherPlans(const fs::path& dataFolder) {
+    std::vector<std::string> names;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(dataFolder / "weather", ignored))
+        if (entry.path().extension() == ".toml" && entry.path().stem() != "kinetics")
+            names.push_back(entry.path().stem().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+WeatherPlan readWeatherPlan(const fs::path& dataFolder, const std::string& environment, const std::string& metal) {
+    const std::string name = metal + "_" + environment;
+    const std::vector<std::string> known = weatherPlans(dataFolder);
+    if (std::find(known.begin(), known.end(), name) == known.end())
+        throw Error(ExitCode::commandLine, name,
+                    fmt::format("nothing is known about the weathering of {} in this environment", metal),
+                    fmt::format("there are plans for {}", vocabulary::listed(known)));
+    std::vector<Diagnostic> findings;
+    WeatherPlan plan;
+    PlanReader file(dataFolder / "weather" / (name + ".toml"), findings);
+    file.reader().allowOnly(file.table(), {"title", "metal", "kinetics", "paper_um_per_year", "expansion", "retained",
+                                           "oxide", "mineral", "conversion", "wear", "deposit"});
+    plan.title = file.neededWord(file.table(), "title");
+    plan.metal = file.neededWord(file.table(), "metal");
+    plan.paperUmPerYear = file.reader().number(file.table(), "paper_um_per_year", 0.0, 1e4);
+    plan.expansion = file.needed(file.table(), "expansion", 0.1, 100.0);
+    plan.retained = file.needed(file.table(), "retained", 0.0, 1.0);
+    readLayers(file, plan);
+    readEvents(file, plan);
+    readKinetics(dataFolder / "weather" / "kinetics.toml", file.neededWord(file.table(), "kinetics"), name + ".toml",
+                 plan, findings);
+    if (!findings.empty())
+        throw ScriptError(findings);
+    return plan;
+}
+
+double patinaThicknessUm(const WeatherPlan& plan, const WeatherKinetics& kinetics, double years) {
+    if (years <= 0.0)
+        return 0.0;
+    if (kinetics.category.empty()) {
+        if (!plan.paperUmPerYear)
+            throw Error(ExitCode::commandLine, "--category", fmt::format("the paper has no rate for {}", plan.metal),
+                        "give a corrosivity category of ISO 9223, C1 to CX, as in --category C3");
+        const double x = std::min(years / paperYears, 1.0);
+        return paperYears * *plan.paperUmPerYear * x * (2.0 - x);
+    }
+    const auto rate = plan.firstYearUm.find(kinetics.category);
+    if (rate == plan.firstYearUm.end()) {
+        std::vector<std::string> names;
+        for (const auto& entry : plan.firstYearUm)
+            names.push_back(entry.first);
+        throw Error(ExitCode::commandLine, "--category",
+                    fmt::format("'{}' is not a corrosivity category", kinetics.category),
+                    fmt::format("ISO 9223 has {}", vocabulary::listed(names)));
+    }
+    const auto [least, most] = rate->second;
+    // C1 begins at 0, between which and anything there is no geometric mean.
+    const double first = least > 0.0 ? least * std::pow(most / least, kinetics.position) : most * kinetics.position;
+    const double b = plan.exponent;
+    const double loss = years <= isoYears
+                            ? std::pow(years, b)
+                            : std::pow(isoYears, b) + b * std::pow(isoYears, b - 1.0) * (years - isoYears);
+    return plan.expansion * plan.retained * first * loss;
+}
+
+std::vector<double> layerThicknessesUm(const WeatherPlan& plan, const WeatherKinetics& kinetics, double years) {
+    const auto oxidesAt = [&](double at, std::vector<double>* each) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < plan.oxides.size(); ++i) {
+            const double t = plan.oxides[i].thicknessUm * (1.0 - std::exp(-at / plan.oxides[i].years));
+            if (each)
+                (*each)[i] = t;
+            sum += t;
+        }
+        return sum;
+    };
+    std::vector<double> thickness(plan.oxides.size() + plan.minerals.size(), 0.0);
+    oxidesAt(years, &thickness);
+    // What grows in each twentieth of a year goes to the minerals by their parts at that time: the latest to begin
+    // takes its share first, those before it the rest.
+    constexpr double step = 0.05;
+    double before = 0.0;
+    const int steps = static_cast<int>(std::ceil(years / step - 1e-9));
+    for (int i = 1; i <= steps; ++i) {
+        const double now = std::min(years, i * step), middle = now - 0.5 * step;
+        const double mineral = std::max(before, patinaThicknessUm(plan, kinetics, now) - oxidesAt(now, nullptr));
+        double left = mineral - before;
+        for (std::size_t m = plan.minerals.size(); m-- > 0;) {
+            const auto& [from, to] = plan.minerals[m].begins;
+            const double x = std::clamp((middle - from) / std::max(to - from, 1e-9), 0.0, 1.0);
+            const double part = left * plan.minerals[m].share * x * x * (3.0 - 2.0 * x);
+            thickness[plan.oxides.size() + m] += part;
+            left -= part;
+        }
+        // Before the first mineral has begun everywhere some of the growth has nowhere to go yet; it is made up later.
+        before = mineral - left;
+    }
+    return thickness;
+}
+
+} // namespace patina

@@ -1,0 +1,99 @@
+#pragma once
+// What the weather does to a metal: layers in their order, how thick they are after how many years, and where
+// (Dorsey & Hanrahan 1996, section 2.2 and figure 2; ISO 9223 and 9224 for the amounts).
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace patina {
+
+/// How a layer's thickness is spread over the surface: an even part, and a pattern of growth that ages with it.
+struct WeatherPattern {
+    std::string model; ///< "BD", …
+    int total = 10;    ///< monolayers of age at the reference year
+    double even = 0.3; ///< share of the mean thickness that lies everywhere alike, 0…1
+    std::string map;   ///< a map of the language that scales the thickness; empty: none
+};
+
+/// Oxides approach a thickness: t (1 - exp(-years / years_)).
+struct WeatherOxide {
+    std::string material;
+    double thicknessUm = 0.0;
+    double years = 1.0;
+    WeatherPattern pattern;
+};
+
+/// Minerals share what the kinetics leave after the oxides. From `begins.first` to `begins.second` years a mineral's
+/// part of the growth rises from nothing to `share`.
+struct WeatherMineral {
+    std::string material;
+    std::pair<double, double> begins{0.0, 1.0};
+    double share = 1.0;
+    WeatherPattern pattern;
+};
+
+/// One mineral turns into another, half of it in `halfLifeYears`.
+struct WeatherConversion {
+    std::string from, to;
+    double halfLifeYears = 10.0;
+    double begins = 0.0;
+};
+
+/// What is worn off, softest first.
+struct WeatherWear {
+    double umPerYear = 0.0;
+    double begins = 0.0;
+    std::string map;
+};
+
+/// What settles on top of all else.
+struct WeatherDeposit {
+    std::string material;
+    double umPerYear = 0.0;
+    double begins = 0.0;
+    WeatherPattern pattern;
+};
+
+struct WeatherPlan {
+    std::string title;
+    std::string metal;
+    std::optional<double> paperUmPerYear; ///< mean growth of the patina over the first 20 years (the paper's rate)
+    double expansion = 1.0;               ///< thickness of mineral per thickness of metal lost
+    double retained = 1.0;                ///< share of it that is not washed away
+    double exponent = 1.0;                ///< b of D = r t^b
+    /// First year's loss of metal by category, µm: least and most.
+    std::map<std::string, std::pair<double, double>> firstYearUm;
+    std::vector<WeatherOxide> oxides;
+    std::vector<WeatherMineral> minerals;
+    std::vector<WeatherConversion> conversions;
+    std::vector<WeatherWear> wear;
+    std::vector<WeatherDeposit> deposits;
+};
+
+/// Reads data/weather/METAL_ENVIRONMENT.toml and kinetics.toml.
+/// \throws Error (command line) where there is none for the two; ScriptError with every fault of the files
+WeatherPlan readWeatherPlan(const std::filesystem::path& dataFolder, const std::string& environment,
+                            const std::string& metal);
+
+/// Environments and metals for which there are plans, as "copper_marine".
+std::vector<std::string> weatherPlans(const std::filesystem::path& dataFolder);
+
+/// How much patina there is after some years.
+struct WeatherKinetics {
+    std::string category;  ///< C1 … CX of ISO 9223; empty: the paper's rate
+    double position = 0.5; ///< within the category's range: 0 its least, 1 its most; between them geometrically
+};
+
+/// Mean thickness of the whole patina, µm. The paper's rate r: 20 r (2x - x²), x = years / 20, at most 1: fastest at
+/// first, nothing after 20 years. ISO 9224: expansion · retained · r years^b, along the tangent after 20 years.
+/// \throws Error (command line) for a category without a rate
+double patinaThicknessUm(const WeatherPlan& plan, const WeatherKinetics& kinetics, double years);
+
+/// The same, shared out: first the oxides, then the minerals, in the plan's order. Never falls with the years.
+std::vector<double> layerThicknessesUm(const WeatherPlan& plan, const WeatherKinetics& kinetics, double years);
+
+} // namespace patina

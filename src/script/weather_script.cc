@@ -1,0 +1,192 @@
+#include "script/weather_script.h"
+
+#include "base/errors.h"
+#include "operators/growth/grow.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace patina {
+
+namespace {
+
+// The year at which a layer's pattern has reached its full age. It does not depend on the frames asked for.
+constexpr double referenceYear = 30.0;
+// Films thinner than a tenth of a nanometre are left for the next frame.
+constexpr double leastUm = 1e-4;
+
+// Mean factor of a pattern at every step it was asked at, relative to its last one.
+class PatternMeans {
+  public:
+    explicit PatternMeans(const WeatherPattern& pattern) {
+        options_.model = *growthModelNamed(pattern.model);
+        options_.total = pattern.total;
+        options_.ofFull = true;
+        top_ = expectedScale(options_).top();
+        options_.ofFull = false;
+    }
+    double at(int step) {
+        if (step <= 0)
+            return 0.0;
+        const auto [found, isNew] = means_.try_emplace(step, 0.0);
+        if (isNew) {
+            options_.step = step;
+            found->second = expectedScale(options_).mean / top_;
+        }
+        return found->second;
+    }
+
+  private:
+    GrowthOptions options_;
+    double top_ = 1.0;
+    std::map<int, double> means_;
+};
+
+// One layer through the years: how much of it lies evenly, and how old its pattern is.
+class GrowingLayer {
+  public:
+    GrowingLayer(std::string material, const WeatherPattern& pattern, double referenceUm)
+        : material_(std::move(material)), pattern_(pattern), means_(pattern) {
+        const double full = means_.at(pattern.total);
+        amplitude_ = full > 0.0 ? (1.0 - pattern.even) * referenceUm / full : 0.0;
+    }
+
+    const std::string& material() const { return material_; }
+    bool present() const { return step_ > 0 || evenUm_ > 0.0; }
+
+    // The statement that brings the mean thickness to `um`; empty where nothing is to be done.
+    std::string growTo(double um, const std::string& word) {
+        // The pattern takes its part as far as whole steps go; the even part makes up for the rest, so that the mean is
+        // exact and neither ever falls.
+        const double forPattern = std::min((1.0 - pattern_.even) * um, um - evenUm_);
+        int step = step_;
+        while (step < pattern_.total && amplitude_ * means_.at(step + 1) <= forPattern + 1e-9)
+            ++step;
+        const double even = std::max(evenUm_, um - amplitude_ * means_.at(step));
+        const double more = even - evenUm_;
+        std::string statement;
+        if (step > step_ && amplitude_ > leastUm) {
+            const double most = more + amplitude_;
+            std::string texture = fmt::format("texture({}(rate=linear, step={}, {}total={}) of full)", pattern_.model,
+                                              step, step_ > 0 ? fmt::format("since={}, ", step_) : "", pattern_.total);
+            if (more > leastUm)
+                texture = fmt::format("mix({:.4g}, 1, {})", more / most, texture);
+            statement = fmt::format("{} {} {:.4g} {}{}", word, material_, most, texture,
+                                    pattern_.map.empty() ? "" : " * " + pattern_.map);
+        } else if (more > leastUm) {
+            statement =
+                fmt::format("{} {} {:.4g}{}", word, material_, more, pattern_.map.empty() ? "" : " " + pattern_.map);
+        } else {
+            return {};
+        }
+        step_ = step;
+        evenUm_ = even;
+        return statement + fmt::format(" as {};", material_);
+    }
+
+  private:
+    std::string material_;
+    WeatherPattern pattern_;
+    PatternMeans means_;
+    double amplitude_ = 0.0; // µm at factor 1
+    double evenUm_ = 0.0;
+    int step_ = 0;
+};
+
+std::string yearText(double year) {
+    return fmt::format("{:g}", year);
+}
+
+std::string folderOf(double year) {
+    // Sorted by name they are sorted by year.
+    const double whole = std::floor(year);
+    std::string text = fmt::format("year_{:03.0f}", whole);
+    if (year > whole)
+        text += fmt::format("{:.3f}", year - whole).substr(1);
+    return text;
+}
+
+std::string amountText(const WeatherPlan& plan, const WeatherKinetics& kinetics, double year) {
+    const double um = patinaThicknessUm(plan, kinetics, year);
+    if (kinetics.category.empty())
+        return fmt::format("{:.3g} um, at the paper's rate of {:g} um a year, which ends after 20 years", um,
+                           *plan.paperUmPerYear);
+    return fmt::format("{:.3g} um, by ISO 9223 category {} (at {:.0f} % of its range) and ISO 9224, {:g} um of mineral "
+                       "for 1 um of {}, {:.0f} % of it not washed away",
+                       um, kinetics.category, 100.0 * kinetics.position, plan.expansion, plan.metal,
+                       100.0 * plan.retained);
+}
+
+} // namespace
+
+std::vector<WeatherFrame> weatherScripts(const WeatherPlan& plan, const WeatherKinetics& kinetics,
+                                         const std::vector<double>& years, const std::string& name) {
+    for (std::size_t i = 0; i < years.size(); ++i)
+        if (!(years[i] >= 0.0) || !std::isfinite(years[i]) || (i > 0 && years[i] <= years[i - 1]))
+            throw Error(ExitCode::commandLine, "--years", "years must increase and begin at 0 or later");
+
+    const std::vector<double> reference = layerThicknessesUm(plan, kinetics, referenceYear);
+    std::vector<GrowingLayer> layers;
+    for (std::size_t i = 0; i < plan.oxides.size(); ++i)
+        layers.emplace_back(plan.oxides[i].material, plan.oxides[i].pattern, reference[i]);
+    for (std::size_t i = 0; i < plan.minerals.size(); ++i)
+        layers.emplace_back(plan.minerals[i].material, plan.minerals[i].pattern, reference[plan.oxides.size() + i]);
+    std::vector<GrowingLayer> deposits;
+    for (const WeatherDeposit& deposit : plan.deposits)
+        deposits.emplace_back(deposit.material, deposit.pattern,
+                              deposit.umPerYear * std::max(1.0, referenceYear - deposit.begins));
+
+    std::vector<WeatherFrame> frames;
+    double since = 0.0;
+    for (const double year : years) {
+        WeatherFrame frame;
+        frame.year = year;
+        frame.folder = folderOf(year);
+        std::string text = fmt::format("# {}, year {}", plan.title, yearText(year));
+        text += frames.empty() ? ".\n" : fmt::format(" (going on from year {}).\n", yearText(since));
+        text += fmt::format("# The patina is {}.\n", amountText(plan, kinetics, year));
+        text += "# A thickness is the layer's mean times what its pattern and its place ask for.\n\n";
+        text += frames.empty() ? fmt::format("new {};\n", plan.metal)
+                               : fmt::format("open \"../{}/{}.vdb\";\n", frames.back().folder, name);
+
+        const std::vector<double> thickness = layerThicknessesUm(plan, kinetics, year);
+        for (std::size_t i = 0; i < layers.size(); ++i) {
+            const std::string statement = layers[i].growTo(thickness[i], layers[i].present() ? "grow" : "coat");
+            if (!statement.empty())
+                text += statement + "\n";
+        }
+        for (const WeatherConversion& conversion : plan.conversions) {
+            const double passed = year - std::max(since, conversion.begins);
+            const auto isPresent = [&](const GrowingLayer& layer) {
+                return layer.material() == conversion.from && layer.present();
+            };
+            if (passed > 0.0 && std::any_of(layers.begin(), layers.end(), isPresent))
+                text += fmt::format("convert {} to {} {:.4g};\n", conversion.from, conversion.to,
+                                    1.0 - std::exp2(-passed / conversion.halfLifeYears));
+        }
+        for (const WeatherWear& wear : plan.wear) {
+            const double passed = year - std::max(since, wear.begins);
+            if (passed > 0.0)
+                text += fmt::format("erode {:.4g}{} by hardness;\n", wear.umPerYear * passed,
+                                    wear.map.empty() ? "" : " " + wear.map);
+        }
+        for (std::size_t i = 0; i < deposits.size(); ++i) {
+            const double um = plan.deposits[i].umPerYear * std::max(0.0, year - plan.deposits[i].begins);
+            // What settles lies on top, also where minerals have grown over earlier dirt.
+            const std::string statement = deposits[i].growTo(um, "coat");
+            if (!statement.empty())
+                text += statement + "\n";
+        }
+        text += "render maps;\n";
+        frame.script = std::move(text);
+        frames.push_back(std::move(frame));
+        since = year;
+    }
+    return frames;
+}
+
+} // namespace patina

@@ -1,0 +1,221 @@
+// vdb-patina weather MODEL --environment E --years N
+
+#include "command_line.h"
+#include "commands.h"
+#include "console.h"
+#include "data_folder.h"
+#include "outputs.h"
+#include "report.h"
+#include "script_run.h"
+
+#include "base/atomic_file.h"
+#include "base/errors.h"
+#include "render/contact_sheet.h"
+#include "render/film.h"
+#include "script/weather_script.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <sstream>
+
+namespace patina::tool {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+    std::string model;
+    std::string environment;
+    std::string metal = "copper";
+    std::string years = "30";
+    int frames = 6;
+    std::string category;
+    bool extremes = false;
+    std::string maps = "last";
+};
+
+// "30" with a number of frames, or "A:B:STEP".
+std::vector<double> yearsOf(const Arguments& arguments) {
+    std::vector<double> numbers;
+    std::istringstream in(arguments.years);
+    std::string part;
+    bool good = true;
+    while (std::getline(in, part, ':')) {
+        char* end = nullptr;
+        numbers.push_back(std::strtod(part.c_str(), &end));
+        good = good && !part.empty() && *end == '\0' && std::isfinite(numbers.back()) && numbers.back() >= 0.0;
+    }
+    good = good && (numbers.size() == 1 || numbers.size() == 3);
+    if (good && numbers.size() == 1)
+        good = numbers[0] > 0.0;
+    if (good && numbers.size() == 3)
+        good = numbers[1] >= numbers[0] && numbers[2] > 0.0;
+    if (!good)
+        throw Error(ExitCode::commandLine, "--years", fmt::format("'{}' is not a time", arguments.years),
+                    "a number of years above 0, as in --years 30, or first:last:step, as in --years 0:30:5");
+    std::vector<double> years;
+    if (numbers.size() == 3) {
+        const double count = std::floor((numbers[1] - numbers[0]) / numbers[2] + 1e-9);
+        if (count > 10000.0)
+            throw Error(ExitCode::commandLine, "--years",
+                        fmt::format("'{}' has more than 10000 frames", arguments.years), "use a larger step");
+        for (int i = 0; i <= static_cast<int>(count); ++i)
+            years.push_back(numbers[0] + i * numbers[2]);
+    } else if (arguments.frames == 1) {
+        years = {numbers[0]};
+    } else {
+        for (int i = 0; i < arguments.frames; ++i)
+            years.push_back(numbers[0] * i / (arguments.frames - 1));
+    }
+    return years;
+}
+
+// Whether an earlier run has made this frame, from the same script.
+bool isDone(const fs::path& folder, const std::string& name, const std::string& script) {
+    const fs::path scriptFile = folder / (name + ".patina");
+    return fs::exists(folder / "report.json") && fs::exists(folder / (name + ".vdb")) && fs::exists(scriptFile) &&
+           readTextFile(scriptFile.string()) == script;
+}
+
+void runFrame(const WeatherFrame& frame, const fs::path& folder, const Arguments& arguments, const Options& given,
+              bool withMaps, const MaterialLibrary& materials, Console& console) {
+    Options options = given;
+    options.output = folder.string();
+    options.report.clear();
+    options.bakeMaps = withMaps;
+    fs::create_directories(folder);
+    const fs::path scriptFile = folder / (arguments.environment + ".patina");
+    writeTextFile(scriptFile, frame.script);
+    const Task task = prepareTask(scriptFile.string(), arguments.model, materials, options, console);
+    checkBudget(task, options, console);
+    reportFile(options, folder);
+    RunResult result = runProgram(task.program, task.model.surface, materials, runOptionsOf(task, options), console);
+    if (result.interrupted)
+        throw Interrupted();
+    warnAboutClamping(result, console);
+    writeResults(task, result, nlohmann::ordered_json::array(), materials, options, folder, console);
+}
+
+void runSeries(const Arguments& arguments, const WeatherPlan& plan, const WeatherKinetics& kinetics,
+               const std::vector<double>& years, const Options& options, const fs::path& folder, Console& console) {
+    const std::vector<WeatherFrame> frames = weatherScripts(plan, kinetics, years, arguments.environment);
+    if (options.dryRun) {
+        for (const WeatherFrame& frame : frames)
+            console.result(frame.script);
+        return;
+    }
+    const MaterialLibrary materials = MaterialLibrary::load(findDataFolder());
+    std::vector<LabelledImage> pictures;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        const WeatherFrame& frame = frames[i];
+        const fs::path here = folder / frame.folder;
+        const bool withMaps = arguments.maps == "all" || (arguments.maps == "last" && i + 1 == frames.size());
+        console.notice(fmt::format("year {:g}: frame {} of {}", frame.year, i + 1, frames.size()));
+        if (options.resume && isDone(here, arguments.environment, frame.script)) {
+            console.notice("done by an earlier run");
+        } else {
+            try {
+                runFrame(frame, here, arguments, options, withMaps, materials, console);
+            } catch (const Interrupted&) {
+                throw Error(ExitCode::interrupted, "weather",
+                            fmt::format("interrupted in year {:g}; {} of {} frames are finished and saved", frame.year,
+                                        i, frames.size()),
+                            "the same command with --resume goes on from there");
+            }
+        }
+        if (options.pictureSize > 0) {
+            const fs::path picture = here / "preview.png";
+            // Numbered for programs that read image sequences.
+            fs::copy_file(picture, folder / fmt::format("{}_{:04}.png", arguments.environment, i + 1),
+                          fs::copy_options::overwrite_existing);
+            pictures.push_back(
+                {readPng(picture), fmt::format("{:g} year{}", frame.year, frame.year == 1.0 ? "" : "s")});
+        }
+    }
+    if (pictures.empty())
+        return;
+    ContactSheetOptions sheetOptions;
+    sheetOptions.title = plan.title;
+    if (!kinetics.category.empty())
+        sheetOptions.title += ", category " + kinetics.category;
+    const ContactSheet sheet = makeContactSheet(pictures, sheetOptions);
+    if (!sheet.hasText)
+        console.warning("no font was found on this machine: the sheet has no labels");
+    writePng(sheet.image, folder / "contact_sheet.png", {{"Software", "vdb-patina " PATINA_VERSION}});
+    console.result((folder / "contact_sheet.png").string());
+}
+
+void weather(const Arguments& arguments, const Options& options, Console& console) {
+    const std::vector<double> years = yearsOf(arguments);
+    const WeatherPlan plan = readWeatherPlan(findDataFolder(), arguments.environment, arguments.metal);
+    WeatherKinetics kinetics;
+    kinetics.category = arguments.category;
+    patinaThicknessUm(plan, kinetics, 1.0); // an unknown category is told before anything is made
+    if (arguments.extremes && arguments.category.empty())
+        throw Error(ExitCode::commandLine, "--extremes", "only a category has a range", "give one with --category");
+    const fs::path folder =
+        options.dryRun ? fs::path() : outputFolder(options, fs::path(arguments.model).stem().string() + "_weather");
+    if (!arguments.extremes) {
+        runSeries(arguments, plan, kinetics, years, options, folder, console);
+        return;
+    }
+    for (const bool most : {false, true}) {
+        kinetics.position = most ? 1.0 : 0.0;
+        const fs::path here = folder / (most ? "most" : "least");
+        if (!options.dryRun)
+            fs::create_directories(here);
+        runSeries(arguments, plan, kinetics, years, options, here, console);
+    }
+}
+
+} // namespace
+
+void addWeatherCommand(CLI::App& app, Options& options, Action& action) {
+    CLI::App* command =
+        app.add_subcommand("weather", "Lets years pass: scripts, one result per frame, a contact sheet");
+    auto arguments = std::make_shared<Arguments>();
+    command->add_option("MODEL", arguments->model, "OBJ, PLY, STL or OFF file, or a shape of `make`")->required();
+    const std::string group = "Weather";
+    command->add_option("--environment", arguments->environment, "marine, rural or urban")
+        ->check(oneOf({"marine", "rural", "urban"}))
+        ->required()
+        ->type_name("NAME")
+        ->group(group);
+    command->add_option("--metal", arguments->metal, "copper (default), zinc or steel")
+        ->check(oneOf({"copper", "zinc", "steel"}))
+        ->type_name("NAME")
+        ->group(group);
+    command->add_option("--years", arguments->years, "How many (default 30), or first:last:step")
+        ->type_name("N")
+        ->group(group);
+    command->add_option("--frames", arguments->frames, "Frames from the bare metal to the last year (default 6)")
+        ->check(wholeNumberWithin(1, 10000))
+        ->type_name("K")
+        ->group(group);
+    command
+        ->add_option("--category", arguments->category,
+                     "Corrosivity category of ISO 9223, C1 to CX (default: the paper's rates)")
+        ->type_name("C")
+        ->group(group);
+    command->add_flag("--extremes", arguments->extremes, "Two series, for the least and the most of the category")
+        ->group(group);
+    command->add_option("--maps", arguments->maps, "Bake the maps of all frames, the last (default) or none")
+        ->check(oneOf({"all", "last", "none"}))
+        ->type_name("WHICH")
+        ->group(group);
+    addGeneralOptions(*command, options);
+    addOutputOption(*command, options);
+    addModelOptions(*command, options);
+    addVolumeOptions(*command, options);
+    addMapOptions(*command, options);
+    addPictureOptions(*command, options);
+    addRunOptions(*command, options);
+    command->add_flag("--resume", options.resume, "Go on with an interrupted series in the same folder")->group("Run");
+    command->callback([&options, &action, arguments] {
+        action = [&options, arguments](Console& console) { weather(*arguments, options, console); };
+    });
+}
+
+} // namespace patina::tool
