@@ -107,8 +107,10 @@ TEST(Checker, leavesNoArgumentOfGrowthUnread) {
     EXPECT_EQ(growth("sell=1"), "2:54: unknown argument 'sell' (did you mean 'cell'?)");
     EXPECT_EQ(growth("step=2"), "2:54: the argument 'step' is given twice");
     EXPECT_EQ(growth("reach=2"),
-              "2:54: the growth model 'RD' does not use the argument 'reach' (it uses rate, step, total, cell, arrival "
-              "and from)");
+              "2:54: the growth model 'RD' does not use the argument 'reach' (it uses rate, step, total, since, cell, "
+              "arrival and from)");
+    EXPECT_EQ(firstError("coat soot 1 texture(RD(rate=linear, step=2, total=4, since=2))"),
+              "2:60: step 2 does not come after step 2 (since=N is an earlier step of the same history)");
     EXPECT_THAT(growth("3"), HasSubstr("2:54: the arguments of a growth model are named"));
     EXPECT_THAT(growth("cell=0"), HasSubstr("2:59: the size of a cell must be larger than 0"));
     EXPECT_THAT(growth("arrival=2"), HasSubstr("2:62: 'arrival' must be between 0 and 1, this is 2"));

@@ -142,7 +142,8 @@ TEST(Parser, readsEveryArgumentOfGrowth) {
                    "coat soot 1 texture(RDR(rate=cubic, step=1, total=2, cell=50, arrival=1 - exposure, from=(3, 0, "
                    "4), reach=1mm))\n"
                    "coat soot 1 texture(DPD(rate=cubic, step=1, total=2, blocked=wetness, patch=12, seeding=1e-4))\n"
-                   "coat soot 1 texture(ST(rate=parabolic, step=1, total=2, points=300))\n");
+                   "coat soot 1 texture(ST(rate=parabolic, step=1, total=2, points=300))\n"
+                   "coat soot 1 texture(BD(rate=linear, step=7, since=3, total=9))\n");
     const GrowthCall& relaxed = *coatAt(program, 1).map->growth;
     EXPECT_DOUBLE_EQ(*relaxed.cellUm, 50.0);
     EXPECT_EQ(relaxed.arrival->text, "-");
@@ -154,6 +155,8 @@ TEST(Parser, readsEveryArgumentOfGrowth) {
     EXPECT_EQ(*patches.patchCells, 12);
     EXPECT_DOUBLE_EQ(*patches.seeding, 1e-4);
     EXPECT_EQ(*coatAt(program, 3).map->growth->points, 300);
+    EXPECT_EQ(coatAt(program, 4).map->growth->since, 3);
+    EXPECT_TRUE(coatAt(program, 4).map->growth->ofFull); // a difference needs one measure for both
 }
 
 TEST(Parser, bindsMultiplicationTighterThanAdditionAndCountsFromTheLeft) {
