@@ -12,8 +12,10 @@ struct ClosedSurface {
     std::size_t frontTriangles = 0;
 };
 
-/// A closed surface as it is; an open one moved by `thickness` (scene units) against its vertex normals, turned round
-/// and joined along the open edges. Layers grow on the front only (see SurfaceBinding).
+/// Adds what a surface lacks to be closed. Shells that are closed stay as they are; each open one (see MeshTopology) is
+/// moved by up to `thickness` (scene units) against its vertex normals, turned round and joined along the open edges:
+/// half way, where another part of the surface lies behind it, but not less than a fifth of the thickness. Layers grow
+/// on the front only (see SurfaceBinding).
 ClosedSurface closeSurface(const SurfaceMesh& surface, double thickness);
 
 } // namespace patina

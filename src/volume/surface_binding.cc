@@ -13,17 +13,62 @@ namespace patina {
 
 namespace {
 
+// Triangles with longer edges are asked piece by piece.
+constexpr double largeVoxels = 8.0, pieceVoxels = 4.0;
+
+enum Sight : char { seen, buried, partly };
+
+// A triangle and where its corners are in the one it was cut from.
+struct Part {
+    Imath::V3d corners[3];
+    Imath::V2d uvs[3];
+
+    double longestEdge() const {
+        return std::max({(corners[0] - corners[1]).length(), (corners[1] - corners[2]).length(),
+                         (corners[2] - corners[0]).length()});
+    }
+    // The four triangles between the corners and the edges' middles.
+    Part quarter(int i) const {
+        const auto middle = [](const auto& a, const auto& b) { return (a + b) * 0.5; };
+        Part part;
+        for (int c = 0; c < 3; ++c) {
+            const int a = i < 3 ? i : (c + 1) % 3, b = i < 3 ? c : (c + 2) % 3;
+            part.corners[c] = middle(corners[a], corners[b]);
+            part.uvs[c] = middle(uvs[a], uvs[b]);
+        }
+        return part;
+    }
+};
+
 // Whether there is metal on both sides of a triangle, three quarters of a voxel from its corners and its middle.
 // (Both sides are asked, so that a model turned inside out keeps its surface.)
-bool isBuried(const NestSampler& sampler, const ClosedSurface& closed, const Imath::V3i& triangle, double voxelSize) {
-    const Imath::V3d a(closed.positions[triangle[0]]), b(closed.positions[triangle[1]]),
-        c(closed.positions[triangle[2]]);
+bool isBuried(const NestSampler& sampler, const Part& part, double voxelSize) {
+    const Imath::V3d &a = part.corners[0], &b = part.corners[1], &c = part.corners[2];
     const Imath::V3d normal = (b - a).cross(c - a).normalized() * 0.75;
     for (const Imath::V3d& p : {(a + b + c) / 3.0, a, b, c})
         for (const double side : {1.0, -1.0})
             if (sampler.value(0, sampler.locate(p / voxelSize + normal * side)) > 0.0)
                 return false;
     return true;
+}
+
+// The pieces of a part that are seen, each as large as can be, are added to `pieces`.
+Sight examine(const NestSampler& sampler, const Part& part, double voxelSize, double limit, std::vector<Part>& pieces) {
+    if (part.longestEdge() <= limit * voxelSize) {
+        if (isBuried(sampler, part, voxelSize))
+            return buried;
+        pieces.push_back(part);
+        return seen;
+    }
+    const std::size_t before = pieces.size();
+    int count[3] = {0, 0, 0};
+    for (int i = 0; i < 4; ++i)
+        ++count[examine(sampler, part.quarter(i), voxelSize, pieceVoxels, pieces)];
+    if (count[seen] < 4)
+        return count[buried] == 4 ? buried : partly;
+    pieces.resize(before);
+    pieces.push_back(part);
+    return seen;
 }
 
 } // namespace
@@ -36,22 +81,49 @@ SurfaceBinding::SurfaceBinding(const LayerVolume& volume, const SurfaceMesh& sur
 
 void SurfaceBinding::findVisible(const LayerVolume& volume) {
     const NestSampler sampler(volume.grids());
-    std::vector<char> buried(closed_.triangles.size());
-    tbb::parallel_for(std::size_t(0), buried.size(), [&](std::size_t t) {
-        buried[t] = isBuried(sampler, closed_, closed_.triangles[t], volume.scale().voxelSize);
+    const double voxelSize = volume.scale().voxelSize;
+    const std::size_t count = closed_.triangles.size();
+    std::vector<char> sight(count);
+    std::vector<std::vector<Part>> parts(count);
+    tbb::parallel_for(std::size_t(0), count, [&](std::size_t t) {
+        const Imath::V3i& c = closed_.triangles[t];
+        const Part whole{{Imath::V3d(closed_.positions[c[0]]), Imath::V3d(closed_.positions[c[1]]),
+                          Imath::V3d(closed_.positions[c[2]])},
+                         {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}}};
+        sight[t] = examine(sampler, whole, voxelSize, largeVoxels, parts[t]);
+        if (sight[t] != partly)
+            std::vector<Part>().swap(parts[t]);
     });
-    const bool none = std::find(buried.begin(), buried.end(), 0) == buried.end();
+    const bool none = std::all_of(sight.begin(), sight.end(), [](char s) { return s == buried; });
     std::vector<int> visible;
     std::vector<Imath::V3i> triangles;
-    for (std::size_t t = 0; t < buried.size(); ++t)
-        if (none || !buried[t]) {
+    for (std::size_t t = 0; t < count; ++t)
+        if (none || sight[t] == seen) {
             visible.push_back(static_cast<int>(t));
             triangles.push_back(closed_.triangles[t]);
         }
-    if (scene_ && visible == visible_)
+    std::vector<Piece> pieces;
+    std::vector<Imath::V3f> positions;
+    for (std::size_t t = 0; t < count; ++t)
+        for (const Part& part : parts[t]) {
+            if (positions.empty())
+                positions = closed_.positions;
+            const int first = static_cast<int>(positions.size());
+            visible.push_back(static_cast<int>(t));
+            triangles.emplace_back(first, first + 1, first + 2);
+            Piece& piece = pieces.emplace_back();
+            for (int c = 0; c < 3; ++c) {
+                positions.emplace_back(part.corners[c]);
+                piece.corners[c] = Imath::V2f(part.uvs[c]);
+            }
+        }
+    const auto samePieces = [](const Piece& a, const Piece& b) { return std::equal(a.corners, a.corners + 3, b.corners); };
+    if (scene_ && visible == visible_ && pieces.size() == pieces_.size() &&
+        std::equal(pieces.begin(), pieces.end(), pieces_.begin(), samePieces))
         return;
     visible_ = std::move(visible);
-    scene_.emplace(closed_.positions, triangles);
+    pieces_ = std::move(pieces);
+    scene_.emplace(positions.empty() ? closed_.positions : positions, triangles);
 }
 
 void SurfaceBinding::rebind(const LayerVolume& volume) {
@@ -121,6 +193,13 @@ SurfacePoint SurfaceBinding::closest(const Imath::V3d& position, float radius) c
     if (!found)
         return {};
     SurfacePoint point = found->point;
+    const std::size_t whole = visible_.size() - pieces_.size();
+    if (static_cast<std::size_t>(point.triangle) >= whole) {
+        const Imath::V2f* c = pieces_[point.triangle - whole].corners;
+        const Imath::V2f uv = c[0] * (1.f - point.u - point.v) + c[1] * point.u + c[2] * point.v;
+        point.u = uv.x;
+        point.v = uv.y;
+    }
     point.triangle = visible_[point.triangle];
     return static_cast<std::size_t>(point.triangle) < closed_.frontTriangles ? point : SurfacePoint();
 }

@@ -28,6 +28,8 @@ class SurfaceBinding {
     void refineBase(LayerVolume& volume);
 
     const SurfaceMesh& surface() const { return *surface_; }
+    /// Whether some of the closed surface is no part of the model (the back of a sheet).
+    bool hasBack() const { return closed_.frontTriangles < closed_.triangles.size(); }
     /// Index of the first active voxel of leaf n.
     std::size_t leafStart(std::size_t n) const { return leafStart_[n]; }
     const SurfacePoint& at(std::size_t index) const { return points_[index]; }
@@ -44,7 +46,12 @@ class SurfaceBinding {
 
     const SurfaceMesh* surface_;
     ClosedSurface closed_;
-    std::vector<int> visible_;      ///< triangles of closed_ that are surface, in order
+    /// A piece of a large triangle of which other pieces are buried.
+    struct Piece {
+        Imath::V2f corners[3]; ///< u, v in its triangle
+    };
+    std::vector<int> visible_;      ///< triangles of closed_ that are surface, in order; then those of the pieces
+    std::vector<Piece> pieces_;     ///< of the last visible ones
     std::optional<RayScene> scene_; ///< of the visible triangles
     std::vector<std::size_t> leafStart_;
     std::vector<SurfacePoint> points_;

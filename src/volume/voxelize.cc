@@ -1,12 +1,18 @@
 #include "volume/voxelize.h"
 
 #include "base/errors.h"
+#include "volume/inside_signs.h"
 #include "volume/material_ids.h"
 #include "volume/nest_grids.h"
 
 #include <fmt/format.h>
 #include <openvdb/tools/MeshToVolume.h>
+#include <openvdb/tools/Prune.h>
+#include <openvdb/tools/SignedFloodFill.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <atomic>
 
 namespace patina {
@@ -39,6 +45,71 @@ struct Interrupter {
     bool wasInterrupted(int = -1) { return progress.cancelled(); }
 };
 
+// Whether there is air, by the winding, at a triangle that has metal on both its sides in the grid. (The library leaves
+// no band around such triangles, so that no voxel tells.)
+bool hasBuriedAir(const openvdb::FloatGrid& grid, const ClosedSurface& surface, const WindingNumber& winding,
+                  double voxelSize) {
+    constexpr std::size_t mostAsked = 20000;
+    const auto sides = [&](std::size_t t) {
+        const Imath::V3i& c = surface.triangles[t];
+        const Imath::V3d a(surface.positions[c[0]]), b(surface.positions[c[1]]), d(surface.positions[c[2]]);
+        const Imath::V3d away = (b - a).cross(d - a).normalized() * (1.5 * voxelSize), middle = (a + b + d) / 3.0;
+        return std::pair(middle + away, middle - away);
+    };
+    std::vector<char> buried(surface.triangles.size(), 0);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, buried.size(), 1024), [&](const auto& range) {
+        const auto accessor = grid.getConstAccessor();
+        const auto isMetal = [&](const Imath::V3d& p) {
+            return accessor.getValue(openvdb::Coord::round(openvdb::Vec3d(p.x, p.y, p.z) / voxelSize)) < 0.f;
+        };
+        for (std::size_t t = range.begin(); t != range.end(); ++t) {
+            const auto [front, back] = sides(t);
+            buried[t] = isMetal(front) && isMetal(back);
+        }
+    });
+    std::vector<std::size_t> asked;
+    for (std::size_t t = 0; t < buried.size(); ++t)
+        if (buried[t])
+            asked.push_back(t);
+    const std::size_t step = 1 + asked.size() / mostAsked;
+    std::atomic<bool> air{false};
+    tbb::parallel_for(std::size_t(0), (asked.size() + step - 1) / step, [&](std::size_t i) {
+        if (air)
+            return;
+        const auto [front, back] = sides(asked[i * step]);
+        if (winding.at(front) < 0.5 || winding.at(back) < 0.5)
+            air = true;
+    });
+    return air;
+}
+
+// The library takes for metal whatever the outside cannot reach, cavities too. Where that is not what the triangles'
+// winding says, the band is made once more without signs and gets its own.
+openvdb::FloatGrid::Ptr voxelizeByWinding(const TriangleAdapter& adapter, const WindingNumber& winding,
+                                          const VoxelizeOptions& options, Interrupter& interrupter) {
+    const double voxelSize = options.scale.voxelSize;
+    const auto outer = static_cast<float>(options.exteriorBand * voxelSize);
+    const auto inner = static_cast<float>(options.interiorBand * voxelSize);
+    const auto widest = static_cast<float>(std::max(options.exteriorBand, options.interiorBand));
+    const auto transform = openvdb::math::Transform::createLinearTransform(voxelSize);
+    openvdb::FloatGrid::Ptr grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
+        interrupter, adapter, *transform, widest, widest, openvdb::tools::UNSIGNED_DISTANCE_FIELD);
+    interrupter.progress.checkpoint();
+    SideGroups(*grid, voxelSize).apply(winding, *grid);
+    const auto leaves = leavesOf(grid->tree());
+    tbb::parallel_for(std::size_t(0), leaves.size(), [&](std::size_t n) {
+        for (auto voxel = leaves[n]->beginValueOn(); voxel; ++voxel)
+            if (*voxel >= outer || *voxel <= -inner)
+                voxel.setValueOff();
+    });
+    openvdb::tools::pruneInactive(grid->tree());
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    grid->tree().root().setBackground(outer, /*updateChildNodes=*/false);
+    openvdb::tools::signedFloodFillWithValues(grid->tree(), outer, inner);
+    openvdb::tools::pruneLevelSet(grid->tree());
+    return grid;
+}
+
 } // namespace
 
 LayerVolume voxelize(const ClosedSurface& surface, const VoxelizeOptions& options, Progress& progress) {
@@ -50,6 +121,13 @@ LayerVolume voxelize(const ClosedSurface& surface, const VoxelizeOptions& option
     grids->base = openvdb::tools::meshToVolume<openvdb::FloatGrid>(interrupter, adapter, *transform,
                                                                    static_cast<float>(options.exteriorBand),
                                                                    static_cast<float>(options.interiorBand));
+    progress.checkpoint();
+    const WindingNumber winding(surface.positions, surface.triangles);
+    const SideGroups groups(*grids->base, voxelSize);
+    if (groups.agree(winding) && !hasBuriedAir(*grids->base, surface, winding, voxelSize))
+        groups.correct(winding, *grids->base);
+    else
+        grids->base = voxelizeByWinding(adapter, winding, options, interrupter);
     progress.checkpoint();
     grids->interiorBand = options.interiorBand;
     grids->exteriorBand = options.exteriorBand;

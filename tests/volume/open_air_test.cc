@@ -1,0 +1,102 @@
+#include "volume/open_air.h"
+
+#include "support/test_surfaces.h"
+#include "volume/nest_grids.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <chrono>
+
+namespace patina {
+namespace {
+
+/// A ball of radius 30 around a hollow of radius `hollow`, which `channel` opens upward where it is above 0.
+std::unique_ptr<test::Piece> hollowBall(float hollow, double channel = 0.0) {
+    SurfaceMesh surface = test::sphere(30.f, 4);
+    const SurfaceMesh inner = test::sphere(hollow, 3);
+    const int first = static_cast<int>(surface.positions.size());
+    for (std::size_t v = 0; v < inner.positions.size(); ++v) {
+        surface.positions.push_back(inner.positions[v]);
+        surface.normals.push_back(-inner.normals[v]);
+    }
+    for (const Imath::V3i& t : inner.triangles)
+        surface.triangles.emplace_back(t[0] + first, t[2] + first, t[1] + first);
+    auto piece = test::makePiece(std::move(surface), test::voxelScale());
+    if (channel > 0.0)
+        for (FloatLeaf* leaf : leavesOf(piece->volume->grids().base->tree()))
+            for (auto voxel = leaf->beginValueAll(); voxel; ++voxel) {
+                const auto c = voxel.getCoord();
+                if (c.z() > 0)
+                    voxel.setValue(std::max(*voxel, static_cast<float>(channel - std::hypot(c.x(), c.y()))));
+            }
+    return piece;
+}
+
+TEST(OpenAir, ABallHasNoClosedAir) {
+    const auto piece = test::makePiece(test::sphere(20.f, 4), test::voxelScale());
+    const OpenAir air(*piece->volume);
+    EXPECT_FALSE(air.anyClosed());
+    EXPECT_EQ(air.sealed(0), OpenAir::Mask{});
+}
+
+TEST(OpenAir, AHollowIsClosedAndSoIsItsWall) {
+    for (const float hollow : {3.f, 16.f}) { // all in the band, and with a middle that is not
+        const auto piece = hollowBall(hollow);
+        const auto& tree = piece->volume->grids().base->tree();
+        ASSERT_GT(tree.getValue(openvdb::Coord(0, 0, 0)), 0.f);
+        const OpenAir air(*piece->volume);
+        ASSERT_TRUE(air.anyClosed());
+        EXPECT_EQ(air.closedPores(), 1u);
+        const auto leaves = leavesOf(std::as_const(tree));
+        for (std::size_t n = 0; n < leaves.size(); ++n)
+            for (auto voxel = leaves[n]->cbeginValueOn(); voxel; ++voxel) {
+                const auto c = voxel.getCoord();
+                const double r = std::sqrt(double(c.x()) * c.x() + double(c.y()) * c.y() + double(c.z()) * c.z());
+                EXPECT_EQ(air.isSealed(n, voxel.pos()), r < 0.5 * (30 + hollow)) << c;
+            }
+    }
+}
+
+TEST(OpenAir, AChannelOpensTheHollow) {
+    const auto piece = hollowBall(23.f, 2.0);
+    EXPECT_TRUE(OpenAir(*hollowBall(23.f)->volume).anyClosed());
+    EXPECT_FALSE(OpenAir(*piece->volume).anyClosed());
+}
+
+TEST(OpenAir, ExclusionZeroesWhatAirDoesNotReach) {
+    const auto piece = hollowBall(3.f);
+    std::vector<float> thickness(piece->volume->activeVoxels(), 1.f);
+    const std::size_t excluded = excludeClosedAir(*piece->volume, thickness);
+    EXPECT_GT(excluded, 113u); // the hollow alone has 4/3 pi 27 voxels
+    EXPECT_EQ(static_cast<std::size_t>(std::count(thickness.begin(), thickness.end(), 0.f)), excluded);
+    EXPECT_EQ(excludeClosedAir(*piece->volume, thickness), 0u);
+}
+
+TEST(OpenAir, IsTheSameOnAnyNumberOfThreads) {
+    const auto piece = hollowBall(10.f);
+    const auto leaves = piece->volume->leafCount();
+    std::vector<OpenAir::Mask> first;
+    for (const std::size_t threads : {1, 2, 4}) {
+        tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        const OpenAir air(*piece->volume);
+        std::vector<OpenAir::Mask> masks;
+        for (std::size_t n = 0; n < leaves; ++n)
+            masks.push_back(air.sealed(n));
+        if (first.empty())
+            first = masks;
+        EXPECT_EQ(masks, first) << threads;
+    }
+}
+
+TEST(OpenAir, DISABLED_TakesAtMost50MillisecondsForThreeMillionVoxels) {
+    const auto piece = test::makePiece(test::sphere(172.f, 6), test::voxelScale());
+    const auto start = std::chrono::steady_clock::now();
+    const OpenAir air(*piece->volume);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    std::printf("%zu voxels: %.1f ms\n", piece->volume->activeVoxels(), 1e3 * seconds);
+    EXPECT_LT(seconds, 0.05);
+}
+
+} // namespace
+} // namespace patina
