@@ -37,8 +37,13 @@ std::string contentHash(const LayerVolume& volume) {
         hash.add(name);
     for (const std::string& name : volume.layers())
         hash.add(name);
-    for (const openvdb::FloatGrid* grid : grids.nest())
-        addTree(hash, grid->tree());
+    addTree(hash, grids.base->tree());
+    if (grids.metal) {
+        hash.add("metal");
+        addTree(hash, grids.metal->tree());
+    }
+    for (const auto& interface : grids.interfaces)
+        addTree(hash, interface->tree());
     if (grids.material)
         addTree(hash, grids.material->tree());
     for (const auto& [name, field] : grids.fields) {

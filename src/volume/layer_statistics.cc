@@ -18,6 +18,7 @@ StackStatistics measureStack(const LayerVolume& volume, const SurfaceMesh& surfa
     std::vector<double> thickness(count * layers);
     std::vector<double> area(count);
     std::vector<double> offset(count);
+    std::vector<double> lossUm(count);
     std::vector<char> found(count);
     constexpr std::size_t block = 1024;
     tbb::parallel_for(std::size_t(0), (count + block - 1) / block, [&](std::size_t b) {
@@ -32,13 +33,15 @@ StackStatistics measureStack(const LayerVolume& volume, const SurfaceMesh& surfa
                                             layers ? &thickness[t * layers] : none.data());
             found[t] = reading.found;
             offset[t] = reading.baseOffset;
+            lossUm[t] = -reading.metalHeight / volume.scale().unitsPerUm();
         }
     });
 
     StackStatistics result;
     const double metres = volume.scale().metresPerUnit;
     double total = 0.0, read = 0.0, offsetSquares = 0.0;
-    std::vector<double> sum(layers + 1, 0.0), squares(layers + 1, 0.0), most(layers + 1, 0.0), covered(layers + 1, 0.0);
+    // The layers, their sum, and the metal that is gone.
+    std::vector<double> sum(layers + 2, 0.0), squares(layers + 2, 0.0), most(layers + 2, 0.0), covered(layers + 2, 0.0);
     for (std::size_t t = 0; t < count; ++t) {
         total += area[t];
         if (!found[t])
@@ -57,6 +60,7 @@ StackStatistics measureStack(const LayerVolume& volume, const SurfaceMesh& surfa
             stack += thickness[t * layers + k];
         }
         add(layers, stack);
+        add(layers + 1, lossUm[t]);
     }
     const double weight = read > 0.0 ? 1.0 / read : 0.0;
     const auto summarise = [&](std::size_t k, const std::string& name) {
@@ -72,6 +76,7 @@ StackStatistics measureStack(const LayerVolume& volume, const SurfaceMesh& surfa
     for (std::size_t k = 0; k < layers; ++k)
         result.layers.push_back(summarise(k, volume.layers()[k]));
     result.total = summarise(layers, "stack");
+    result.metalLoss = summarise(layers + 1, volume.metal());
     result.areaM2 = total * metres * metres;
     result.voxelizationErrorVoxels = std::sqrt(offsetSquares * weight) / volume.scale().voxelSize;
     result.unreadable = total > 0.0 ? 1.0 - read / total : 0.0;

@@ -21,6 +21,7 @@ struct LayerStatistics {
 struct StackStatistics {
     std::vector<LayerStatistics> layers; ///< bottom to top
     LayerStatistics total;               ///< of the sum of the layers
+    LayerStatistics metalLoss;           ///< of the metal that is gone below the base; zeros where it never was eroded
     double areaM2 = 0.0;
     double voxelizationErrorVoxels = 0.0; ///< rms distance between the model and phi_0 along the normal
     double unreadable = 0.0;              ///< fraction of the area where no base was found along the normal

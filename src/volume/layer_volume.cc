@@ -9,7 +9,7 @@
 namespace patina {
 
 std::vector<const openvdb::FloatGrid*> NestGrids::nest() const {
-    std::vector<const openvdb::FloatGrid*> all{base.get()};
+    std::vector<const openvdb::FloatGrid*> all{&floor()};
     for (const auto& interface : interfaces)
         all.push_back(interface.get());
     return all;
@@ -32,12 +32,15 @@ LayerVolume& LayerVolume::operator=(LayerVolume&&) noexcept = default;
 LayerVolume LayerVolume::clone() const {
     auto grids = std::make_unique<NestGrids>();
     grids->base = grids_->base->deepCopy();
+    if (grids_->metal)
+        grids->metal = grids_->metal->deepCopy();
     for (const auto& interface : grids_->interfaces)
         grids->interfaces.push_back(interface->deepCopy());
     if (grids_->material)
         grids->material = grids_->material->deepCopy();
     for (const auto& [name, field] : grids_->fields)
         grids->fields[name] = field->deepCopy();
+    grids->sides = grids_->sides;
     grids->interiorBand = grids_->interiorBand;
     grids->exteriorBand = grids_->exteriorBand;
     LayerVolume copy(scale_, metal(), std::move(grids));
@@ -69,6 +72,12 @@ void LayerVolume::pushLayer(const std::string& material) {
     layers_.push_back(material);
 }
 
+void LayerVolume::splitLayer(int k, const std::string& outer) {
+    materialId(outer);
+    grids_->interfaces.insert(grids_->interfaces.begin() + k, grids_->interfaces[k - 1]->deepCopy());
+    layers_.insert(layers_.begin() + k, outer);
+}
+
 void LayerVolume::removeLayer(int k) {
     grids_->interfaces.erase(grids_->interfaces.begin() + (k - 1));
     layers_.erase(layers_.begin() + (k - 1));
@@ -83,6 +92,8 @@ std::size_t LayerVolume::leafCount() const {
 
 std::size_t LayerVolume::memoryBytes() const {
     std::size_t bytes = grids_->base->memUsage();
+    if (grids_->metal)
+        bytes += grids_->metal->memUsage();
     for (const auto& interface : grids_->interfaces)
         bytes += interface->memUsage();
     if (grids_->material)

@@ -64,6 +64,9 @@ class LayerVolume {
 
     /// Puts a layer on top whose interface equals the present surface (zero thickness everywhere).
     void pushLayer(const std::string& material);
+    /// Makes two layers of layer k (k from 1): k keeps its material, k + 1 above it is of `outer` and has zero thickness
+    /// everywhere, both interfaces being what k's was.
+    void splitLayer(int k, const std::string& outer);
     /// Removes layer k (k from 1) and its interface. What lies above must touch what lies below.
     void removeLayer(int k);
 
@@ -75,6 +78,7 @@ class LayerVolume {
         std::string modelHash; ///< content hash of the model's surface
         std::string program;   ///< version of the program
         std::uint64_t seed = 0;
+        std::string region; ///< Region::text() where the volume is a box cut out of the model; otherwise empty
     };
     Provenance provenance;
 

@@ -15,18 +15,26 @@ using FloatLeaf = openvdb::FloatTree::LeafNodeType;
 using IdLeaf = openvdb::Int32Tree::LeafNodeType;
 
 /// interfaces[k-1] is phi_k. Every grid has the base's active topology, so leaf i of one is leaf i of all.
+/// The floor is what the layers lie on: `metal` where the metal itself was eroded, `base` otherwise.
 struct NestGrids {
-    openvdb::FloatGrid::Ptr base;
+    openvdb::FloatGrid::Ptr base;  ///< phi_0: the metal as it was; heights are measured from it
+    openvdb::FloatGrid::Ptr metal; ///< phi_m >= phi_0: what is left of the metal; null until `erode … and metal`
     std::vector<openvdb::FloatGrid::Ptr> interfaces;
     openvdb::Int32Grid::Ptr material;
     std::map<std::string, openvdb::FloatGrid::Ptr> fields;
+    /// Of a region: the voxels among which the band was made and where it is cut off; empty for a whole model. What lies
+    /// beyond is no air: nothing is read there, and the band does not grow there.
+    openvdb::CoordBBox sides;
     double interiorBand = 0.0; ///< voxels inside the base that hold true distances
     double exteriorBand = 0.0; ///< voxels outside the base that hold true distances
 
-    /// phi_0 … phi_n.
+    const openvdb::FloatGrid& floor() const { return metal ? *metal : *base; }
+    openvdb::FloatGrid& floor() { return metal ? *metal : *base; }
+
+    /// The floor and phi_1 … phi_n: region k lies between the k-th and the one before it.
     std::vector<const openvdb::FloatGrid*> nest() const;
-    const openvdb::FloatGrid& surface() const { return interfaces.empty() ? *base : *interfaces.back(); }
-    openvdb::FloatGrid& surface() { return interfaces.empty() ? *base : *interfaces.back(); }
+    const openvdb::FloatGrid& surface() const { return interfaces.empty() ? floor() : *interfaces.back(); }
+    openvdb::FloatGrid& surface() { return interfaces.empty() ? floor() : *interfaces.back(); }
 };
 
 /// The leaves of a tree in its own order, which is the same for all trees of one topology.

@@ -1,11 +1,22 @@
 #include "volume/nest_sampler.h"
 
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace patina {
 
-NestSampler::NestSampler(const NestGrids& grids) {
-    for (const openvdb::FloatGrid* grid : grids.nest()) {
+NestSampler::NestSampler(const NestGrids& grids)
+    : sides_(grids.sides), lattice_(leavesOf(std::as_const(grids.base->tree()))) {
+    auto nest = grids.nest();
+    interfaces_ = static_cast<int>(nest.size());
+    if (grids.metal) {
+        reference_ = interfaces_;
+        nest.push_back(grids.base.get());
+    }
+    for (const openvdb::FloatGrid* grid : nest) {
         std::vector<const float*> buffers;
         for (const FloatLeaf* leaf : leavesOf(grid->tree()))
             buffers.push_back(leaf->buffer().data());
@@ -13,49 +24,39 @@ NestSampler::NestSampler(const NestGrids& grids) {
         background_.push_back(grid->background());
     }
 
-    const auto leaves = leavesOf(grids.base->tree());
-    openvdb::CoordBBox box;
-    for (const FloatLeaf* leaf : leaves)
-        box.expand(openvdb::Coord(leaf->origin() >> 3));
-    if (leaves.empty())
-        box = openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(0));
-    low_ = box.min();
-    size_ = box.dim();
-    leafIndex_.assign(std::size_t(size_.x()) * size_.y() * size_.z(), -1);
-
     // What lies between leaves is a tile: far inside or far outside.
-    openvdb::FloatGrid::ConstAccessor accessor = grids.base->getConstAccessor();
-    std::size_t at = 0;
-    for (int i = 0; i < size_.x(); ++i)
-        for (int j = 0; j < size_.y(); ++j)
-            for (int k = 0; k < size_.z(); ++k, ++at)
-                if (accessor.getValue((low_ + openvdb::Coord(i, j, k)) << 3) < 0.f)
-                    leafIndex_[at] = -2;
-    for (std::size_t n = 0; n < leaves.size(); ++n) {
-        const openvdb::Coord c = (leaves[n]->origin() >> 3) - low_;
-        leafIndex_[(std::size_t(c.x()) * size_.y() + c.y()) * size_.z() + c.z()] = static_cast<std::int32_t>(n);
-    }
-}
-
-std::int32_t NestSampler::leafAt(int i, int j, int k) const {
-    i -= low_.x();
-    j -= low_.y();
-    k -= low_.z();
-    if (i < 0 || j < 0 || k < 0 || i >= size_.x() || j >= size_.y() || k >= size_.z())
-        return -1;
-    return leafIndex_[(std::size_t(i) * size_.y() + j) * size_.z() + k];
+    const openvdb::CoordBBox& box = lattice_.box();
+    tbb::parallel_for(box.min().x(), box.max().x() + 1, [&](int i) {
+        openvdb::FloatGrid::ConstAccessor accessor = grids.base->getConstAccessor();
+        std::size_t slot = lattice_.slot({i, box.min().y(), box.min().z()});
+        for (int j = box.min().y(); j <= box.max().y(); ++j)
+            for (int k = box.min().z(); k <= box.max().z(); ++k, ++slot)
+                if (lattice_.marked(slot) < 0 && accessor.getValue(openvdb::Coord(i, j, k) << 3) < 0.f)
+                    lattice_.mark(slot, -2);
+    });
 }
 
 NestCell NestSampler::locate(const Imath::V3d& point) const {
     NestCell cell;
-    const double fx = std::floor(point.x), fy = std::floor(point.y), fz = std::floor(point.z);
+    double fx = std::floor(point.x), fy = std::floor(point.y), fz = std::floor(point.z);
+    if (!sides_.empty()) {
+        const openvdb::Coord &low = sides_.min(), &high = sides_.max();
+        fx = std::clamp(fx, double(low.x()), double(high.x() - 1));
+        fy = std::clamp(fy, double(low.y()), double(high.y() - 1));
+        fz = std::clamp(fz, double(low.z()), double(high.z() - 1));
+    }
     const int i = static_cast<int>(fx), j = static_cast<int>(fy), k = static_cast<int>(fz);
     cell.x = point.x - fx;
     cell.y = point.y - fy;
     cell.z = point.z - fz;
+    if (!sides_.empty()) {
+        cell.x = std::clamp(cell.x, -2.0, 3.0);
+        cell.y = std::clamp(cell.y, -2.0, 3.0);
+        cell.z = std::clamp(cell.z, -2.0, 3.0);
+    }
     const bool sameLeaf = (i & 7) != 7 && (j & 7) != 7 && (k & 7) != 7;
     if (sameLeaf) {
-        const std::int32_t leaf = leafAt(i >> 3, j >> 3, k >> 3);
+        const std::int32_t leaf = lattice_.at(i >> 3, j >> 3, k >> 3);
         const int first = ((i & 7) << 6) | ((j & 7) << 3) | (k & 7);
         for (int c = 0; c < 8; ++c) {
             cell.leaf[c] = leaf;
@@ -65,7 +66,7 @@ NestCell NestSampler::locate(const Imath::V3d& point) const {
     }
     for (int c = 0; c < 8; ++c) {
         const int ci = i + ((c >> 2) & 1), cj = j + ((c >> 1) & 1), ck = k + (c & 1);
-        cell.leaf[c] = leafAt(ci >> 3, cj >> 3, ck >> 3);
+        cell.leaf[c] = lattice_.at(ci >> 3, cj >> 3, ck >> 3);
         cell.voxel[c] = static_cast<std::int16_t>(((ci & 7) << 6) | ((cj & 7) << 3) | (ck & 7));
     }
     return cell;
@@ -105,7 +106,7 @@ double NestSampler::valueAndGradient(int k, const NestCell& cell, Imath::V3d& gr
 }
 
 float NestSampler::voxel(int k, const openvdb::Coord& coord) const {
-    const std::int32_t leaf = leafAt(coord.x() >> 3, coord.y() >> 3, coord.z() >> 3);
+    const std::int32_t leaf = lattice_.at(coord.x() >> 3, coord.y() >> 3, coord.z() >> 3);
     if (leaf < 0)
         return leaf == -1 ? background_[k] : -background_[k];
     return buffers_[k][leaf][((coord.x() & 7) << 6) | ((coord.y() & 7) << 3) | (coord.z() & 7)];

@@ -2,6 +2,7 @@
 // Trilinear reading of the whole nest at once. The grids share one topology, so a cell's eight corners are found once
 // and every interface is then eight loads away. Includes OpenVDB: for volume/, operators/ and export/ sources.
 
+#include "volume/leaf_lattice.h"
 #include "volume/nest_grids.h"
 
 #include <Imath/ImathVec.h>
@@ -15,7 +16,7 @@ namespace patina {
 struct NestCell {
     std::array<std::int32_t, 8> leaf; ///< leaf index, or -1 outside, -2 inside the band's far sides
     std::array<std::int16_t, 8> voxel;
-    double x, y, z; ///< 0…1 within the cell
+    double x, y, z; ///< 0…1 within the cell (beyond a region's sides -2…3)
 };
 
 /// A read-only view of a volume; valid while its grids are neither moved nor re-allocated. Safe from any thread.
@@ -23,12 +24,16 @@ class NestSampler {
   public:
     explicit NestSampler(const NestGrids& grids);
 
-    int interfaceCount() const { return static_cast<int>(buffers_.size()); } ///< n + 1: base and interfaces
+    int interfaceCount() const { return interfaces_; } ///< n + 1: the floor and the interfaces
 
-    /// The cell around a point given in voxels.
+    /// Which k reads phi_0, the base: 0, or one of its own where the metal was eroded and the floor is phi_m.
+    int reference() const { return reference_; }
+
+    /// The cell around a point given in voxels. Of a region: the nearest cell within its sides, carried on linearly for
+    /// up to two voxels.
     NestCell locate(const Imath::V3d& point) const;
 
-    /// phi_k at the located point, scene units, in double.
+    /// phi_k at the located point, scene units, in double; k = 0 is the floor.
     double value(int k, const NestCell& cell) const;
 
     /// phi_k and its gradient within the cell (scene units per voxel).
@@ -41,11 +46,11 @@ class NestSampler {
     Imath::V3d centralGradient(int k, const openvdb::Coord& coord) const;
 
   private:
-    std::int32_t leafAt(int i, int j, int k) const; ///< leaf coordinates (voxels / 8)
     void corners(int k, const NestCell& cell, double* c) const;
 
-    openvdb::Coord low_, size_;
-    std::vector<std::int32_t> leafIndex_;
+    int interfaces_ = 0, reference_ = 0;
+    openvdb::CoordBBox sides_; ///< empty for a whole model
+    LeafLattice lattice_;      ///< -1 outside, -2 deep inside
     std::vector<std::vector<const float*>> buffers_; ///< [k][leaf]
     std::vector<float> background_;
 };

@@ -17,7 +17,7 @@ struct SectionSampler::Nest {
     double voxelSize;
 
     double metal(const Imath::V3d& voxels, Imath::V3d& gradient) const {
-        const double phi = sampler.valueAndGradient(0, sampler.locate(voxels), gradient) / voxelSize;
+        const double phi = sampler.valueAndGradient(sampler.reference(), sampler.locate(voxels), gradient) / voxelSize;
         gradient /= voxelSize;
         return phi;
     }
@@ -112,10 +112,12 @@ SectionSampler::Foot SectionSampler::typicalPlace() const {
     const std::size_t layers = nest.size() - 1;
     const auto atSurface = [&](float phi) { return std::abs(phi) < 0.5 * nest_->voxelSize; };
 
+    const auto base = leavesOf(std::as_const(grids.base->tree()));
+
     std::vector<double> mean(layers, 0.0);
     std::size_t voxels = 0;
-    for (std::size_t n = 0; n < leaves[0].size(); ++n)
-        for (auto voxel = leaves[0][n]->cbeginValueOn(); voxel; ++voxel)
+    for (std::size_t n = 0; n < base.size(); ++n)
+        for (auto voxel = base[n]->cbeginValueOn(); voxel; ++voxel)
             if (atSurface(*voxel)) {
                 ++voxels;
                 for (std::size_t k = 0; k < layers; ++k)
@@ -126,8 +128,8 @@ SectionSampler::Foot SectionSampler::typicalPlace() const {
 
     std::optional<Foot> best;
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t n = 0; n < leaves[0].size(); ++n)
-        for (auto voxel = leaves[0][n]->cbeginValueOn(); voxel; ++voxel) {
+    for (std::size_t n = 0; n < base.size(); ++n)
+        for (auto voxel = base[n]->cbeginValueOn(); voxel; ++voxel) {
             if (!atSurface(*voxel))
                 continue;
             double difference = 0.0;

@@ -2,16 +2,47 @@
 
 #include "volume/nest_sampler.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace patina {
+
+namespace {
+
+// Whether a layer has grown in voxels with pores, which have a value of their own: half a voxel, exactly.
+bool hasPores(const LayerVolume& volume) {
+    const auto pore = static_cast<float>(0.5 * volume.scale().voxelSize);
+    std::atomic<bool> found{false};
+    for (const auto& interface : volume.grids().interfaces) {
+        const auto leaves = leavesOf(std::as_const(interface->tree()));
+        tbb::parallel_for(std::size_t(0), leaves.size(), [&](std::size_t n) {
+            if (found.load(std::memory_order_relaxed))
+                return;
+            const float* values = leaves[n]->buffer().data();
+            int pores = 0;
+            for (int i = 0; i < 512; ++i)
+                pores += values[i] == pore;
+            if (pores > 2) // a voxel here and there may have the value by chance, and no harm done
+                found.store(true, std::memory_order_relaxed);
+        });
+    }
+    return found;
+}
+
+} // namespace
 
 struct StackProbe::Nest {
     NestSampler sampler;
     VolumeScale scale;
     int layers;
     double reach; ///< voxels outside the base where a surface may be
+    double depth; ///< voxels inside the base where eroded metal may end
+    bool porous;  ///< whether a line may cross an interface more than once
 
     // phi_k along the line, in voxels (phi / voxelSize), and its slope.
     double along(int k, const Imath::V3d& origin, const Imath::V3d& direction, double s, double& slope) const {
@@ -86,12 +117,54 @@ struct StackProbe::Nest {
         return outside;
     }
 
+    // Of layers with pores and overhangs: how much of the line from `floor` outward lies within each layer, voxels, and
+    // where it leaves the outermost one for good. The line ends where it comes nearer to another part of the model.
+    double solidLengths(const Imath::V3d& origin, const Imath::V3d& direction, double floor, double end,
+                        double* lengths) const {
+        const auto count = static_cast<std::size_t>(layers) + 1;
+        std::vector<double> before(count), now(count), inside(count, 0.0);
+        const auto read = [&](double s, std::vector<double>& phi) {
+            const NestCell cell = sampler.locate(origin + direction * s);
+            for (std::size_t k = 0; k < count; ++k)
+                phi[k] = sampler.value(static_cast<int>(k), cell) / scale.voxelSize;
+            return sampler.value(sampler.reference(), cell) / scale.voxelSize;
+        };
+        double s = floor, outermost = floor;
+        double away = read(s, before);
+        while (s < end) {
+            double step = std::abs(before[1]);
+            for (const double phi : before)
+                step = std::min(step, std::abs(phi));
+            step = std::clamp(0.9 * step, 0.125, 2.0);
+            const double awayNow = read(s + step, now);
+            // A line that grazes a wall opposite is no part of this place's stack; nor is metal further out.
+            if (s - floor > 1.0 && (awayNow - away < 0.05 * step || now[0] < 0.0))
+                break;
+            for (std::size_t k = 1; k < count; ++k) {
+                const double f = before[k], g = now[k];
+                const double crossing = f == g ? 0.5 : f / (f - g);
+                if (f <= 0.0)
+                    inside[k] += g <= 0.0 ? step : crossing * step;
+                else if (g <= 0.0)
+                    inside[k] += (1.0 - crossing) * step;
+                if (k + 1 == count && (f <= 0.0 || g <= 0.0))
+                    outermost = g <= 0.0 ? s + step : s + crossing * step;
+            }
+            s += step;
+            away = awayNow;
+            before.swap(now);
+        }
+        for (std::size_t k = 1; k < count; ++k)
+            lengths[k - 1] = std::max(0.0, inside[k] - inside[k - 1]);
+        return outermost;
+    }
+
     // The crossing of phi_0 that Newton steps down its gradient lead to, if they do within 3 voxels.
     bool project(Imath::V3d& point, Imath::V3d& normal) const {
         const Imath::V3d start = point;
         for (int i = 0; i < 12; ++i) {
             Imath::V3d gradient;
-            const double phi = sampler.valueAndGradient(0, sampler.locate(point), gradient) / scale.voxelSize;
+            const double phi = sampler.valueAndGradient(sampler.reference(), sampler.locate(point), gradient) / scale.voxelSize;
             gradient /= scale.voxelSize;
             const double squared = gradient.length2();
             if (squared < 1e-3 || (point - start).length2() > 9.0)
@@ -110,27 +183,50 @@ struct StackProbe::Nest {
     // three times where the model's smooth normal and the voxels disagree so much (a sharp crease, a thin edge).
     bool grazes(const Imath::V3d& origin, const Imath::V3d& direction, double s) const {
         Imath::V3d gradient;
-        sampler.valueAndGradient(0, sampler.locate(origin + direction * s), gradient);
+        sampler.valueAndGradient(sampler.reference(), sampler.locate(origin + direction * s), gradient);
         return gradient.dot(direction) < 0.3 * gradient.length();
     }
 
     // Where the base crosses the line within 2 voxels of its origin; a value of 2 or more where it does not.
     double baseCrossing(const Imath::V3d& origin, const Imath::V3d& direction) const {
         // Inward until inside (the base lies within the voxelisation error of the point), then outward to the crossing.
+        const int base = sampler.reference();
         double slope = 0.0;
         double start = 0.0;
-        double f = along(0, origin, direction, start, slope);
+        double f = along(base, origin, direction, start, slope);
         while (f > 0.0 && start > -2.0) {
             start -= std::clamp(f * 1.5, 0.02, 0.5);
-            f = along(0, origin, direction, start, slope);
+            f = along(base, origin, direction, start, slope);
         }
-        return f > 0.0 ? 2.0 : crossing(0, origin, direction, start, 2.0);
+        return f > 0.0 ? 2.0 : crossing(base, origin, direction, start, 2.0);
+    }
+
+    // Where what is left of the metal crosses the line, at or below the base's crossing. Where the metal is eaten
+    // through, as deep as the line comes: half way to the other side, or the band's inner edge.
+    double floorCrossing(const Imath::V3d& origin, const Imath::V3d& direction, double base) const {
+        if (sampler.reference() == 0)
+            return base;
+        double slope = 0.0;
+        double s = base;
+        double f = along(0, origin, direction, s, slope);
+        double deepest = along(sampler.reference(), origin, direction, s, slope);
+        while (f > 0.0 && s > base - depth) {
+            const double next = s - std::clamp(f, 1e-9, 0.5);
+            const double original = along(sampler.reference(), origin, direction, next, slope);
+            if (original > deepest + 1e-6)
+                return s;
+            deepest = original;
+            s = next;
+            f = along(0, origin, direction, s, slope);
+        }
+        return f > 0.0 ? s : std::min(base, crossing(0, origin, direction, s, base));
     }
 };
 
 StackProbe::StackProbe(const LayerVolume& volume)
     : nest_(new Nest{NestSampler(volume.grids()), volume.scale(), volume.layerCount(),
-                     volume.grids().exteriorBand + 2.0}) {}
+                     volume.grids().exteriorBand + 2.0, volume.grids().interiorBand + 1.0,
+                     hasPores(volume)}) {}
 StackProbe::~StackProbe() = default;
 StackProbe::StackProbe(StackProbe&&) noexcept = default;
 
@@ -161,6 +257,15 @@ StackProbe::Reading StackProbe::read(const Imath::V3d& point, const Imath::V3d& 
     reading.baseOffset = below * scale.voxelSize;
     const double base = below;
     const double umPerVoxel = 1.0 / scale.voxelsPerUm();
+    below = nest.floorCrossing(origin, direction, base);
+    reading.metalHeight = (below - base) * scale.voxelSize;
+    if (nest.porous) {
+        below = nest.solidLengths(origin, direction, below, base + nest.reach, thicknessUm);
+        for (int k = 0; k < nest.layers; ++k)
+            thicknessUm[k] *= umPerVoxel;
+        reading.height = (below - base) * scale.voxelSize;
+        return reading;
+    }
     for (int k = 1; k <= nest.layers; ++k) {
         const double crossing = std::max(below, nest.crossing(k, origin, direction, below, base + nest.reach));
         thicknessUm[k - 1] = (crossing - below) * umPerVoxel;

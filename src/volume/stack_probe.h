@@ -22,7 +22,9 @@ class StackProbe {
         bool projected = false;  ///< it does not cross the normal, or grazes it (a crease, a thin edge): read at the
                                  ///< nearest crossing, along the base's own normal there
         double baseOffset = 0.0; ///< signed distance from the point to the base crossing, scene units
-        double height = 0.0;     ///< surface minus base along the normal, scene units as drawn (exaggerated)
+        double height = 0.0;     ///< surface minus base along the normal, scene units as drawn (exaggerated); below 0
+                                 ///< where the metal itself was eroded and not filled again
+        double metalHeight = 0.0; ///< what is left of the metal minus base, <= 0
     };
 
     /// \param point   on the base surface, scene units; the base must come within 3 voxels of it

@@ -4,6 +4,7 @@
 #include "base/errors.h"
 #include "base/hash.h"
 #include "volume/nest_grids.h"
+#include "volume/region.h"
 
 #include <fmt/format.h>
 
@@ -125,6 +126,8 @@ void writeVolume(const LayerVolume& volume, const std::filesystem::path& path) {
     const NestGrids& grids = volume.grids();
     openvdb::GridPtrVec out;
     out.push_back(named(*grids.base, "base", openvdb::GRID_LEVEL_SET));
+    if (grids.metal)
+        out.push_back(named(*grids.metal, "metal", openvdb::GRID_LEVEL_SET));
     out.push_back(named(grids.surface(), "surface", openvdb::GRID_LEVEL_SET));
     for (int k = 1; k <= volume.layerCount(); ++k)
         out.push_back(named(*grids.interfaces[k - 1], volume.interfaceGridName(k), openvdb::GRID_LEVEL_SET));
@@ -142,6 +145,8 @@ void writeVolume(const LayerVolume& volume, const std::filesystem::path& path) {
     meta.insertMeta("patina_model", openvdb::StringMetadata(from.model));
     meta.insertMeta("patina_model_hash", openvdb::StringMetadata(from.modelHash));
     meta.insertMeta("patina_seed", openvdb::StringMetadata(std::to_string(from.seed)));
+    if (!from.region.empty())
+        meta.insertMeta("patina_region", openvdb::StringMetadata(from.region));
     meta.insertMeta("patina_voxel_size", openvdb::DoubleMetadata(volume.scale().voxelSize));
     meta.insertMeta("patina_metres_per_unit", openvdb::DoubleMetadata(volume.scale().metresPerUnit));
     meta.insertMeta("patina_exaggeration", openvdb::DoubleMetadata(volume.scale().exaggeration));
@@ -168,12 +173,16 @@ void writeVolume(const LayerVolume& volume, const std::filesystem::path& path) {
     file.commit();
 }
 
-LayerVolume readVolume(const std::filesystem::path& path) {
-    const std::string file = path.string();
+void checkVolumeFile(const std::filesystem::path& path) {
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(path, ignored))
-        throw RunError(file, "there is no such file");
+        throw RunError(path.string(), "there is no such file");
     checkSeal(path);
+}
+
+LayerVolume readVolume(const std::filesystem::path& path) {
+    const std::string file = path.string();
+    checkVolumeFile(path);
     openvdb::GridPtrVecPtr read;
     openvdb::MetaMap::Ptr meta;
     try {
@@ -202,6 +211,12 @@ LayerVolume readVolume(const std::filesystem::path& path) {
     grids->interiorBand = required<double>(*meta, "patina_interior_band", file);
     grids->exteriorBand = required<double>(*meta, "patina_exterior_band", file);
     grids->base = requiredGrid<openvdb::FloatGrid>(*read, "base", file);
+    for (auto& grid : *read)
+        if (grid->getName() == "metal") {
+            grids->metal = requiredGrid<openvdb::FloatGrid>(*read, "metal", file);
+            if (!grids->metal->tree().hasSameTopology(grids->base->tree()))
+                throw RunError(file, "grid 'metal' has another topology than 'base'");
+        }
     auto material = requiredGrid<openvdb::Int32Grid>(*read, "material", file);
     NestGrids* raw = grids.get();
     LayerVolume volume(scale, palette[1], std::move(grids));
@@ -231,6 +246,11 @@ LayerVolume readVolume(const std::filesystem::path& path) {
     from.model = optionalText(*meta, "patina_model");
     from.modelHash = optionalText(*meta, "patina_model_hash");
     from.program = optionalText(*meta, "patina_version");
+    from.region = optionalText(*meta, "patina_region");
+    if (!from.region.empty()) {
+        const Imath::Box3i sides = Region::fromText(from.region, file).voxelSides();
+        raw->sides = openvdb::CoordBBox(sides.min.x, sides.min.y, sides.min.z, sides.max.x, sides.max.y, sides.max.z);
+    }
     try {
         from.seed = std::stoull(optionalText(*meta, "patina_seed"));
     } catch (const std::exception&) {
@@ -246,6 +266,8 @@ std::vector<GridSummary> summarizeGrids(const LayerVolume& volume) {
         summary.push_back({name, grid.valueType(), gridClass, grid.activeVoxelCount(), grid.memUsage()});
     };
     add("base", *grids.base, "level set");
+    if (grids.metal)
+        add("metal", *grids.metal, "level set");
     for (int k = 1; k <= volume.layerCount(); ++k)
         add(volume.interfaceGridName(k), *grids.interfaces[k - 1], "level set");
     add("material", *grids.material, "IDs");

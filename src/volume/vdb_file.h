@@ -18,6 +18,9 @@ void writeVolume(const LayerVolume& volume, const std::filesystem::path& path);
 /// \throws RunError naming the file, the grid and what was expected.
 LayerVolume readVolume(const std::filesystem::path& path);
 
+/// \throws RunError where a file is not a whole volume as writeVolume() wrote it.
+void checkVolumeFile(const std::filesystem::path& path);
+
 /// What stands in a .vdb: one line per grid for `info`.
 struct GridSummary {
     std::string name;

@@ -1,0 +1,276 @@
+#include "volume/closing.h"
+
+#include "base/errors.h"
+#include "volume/band_growth.h"
+#include "volume/closing_balls.h"
+#include "volume/leaf_lattice.h"
+#include "volume/nest_grids.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <memory>
+
+namespace patina {
+
+namespace {
+
+struct Film {
+    openvdb::Coord block;
+    std::array<std::uint64_t, 8> missing; ///< voxels that the band lacks
+    std::array<float, 512> level;         ///< of the closed surface, voxels; infinite where there is no film
+};
+
+struct Searchers {
+    NearestInBlock seeds, balls;
+};
+
+constexpr float infinite = std::numeric_limits<float>::infinity();
+
+// A film counts where it is thicker than what is ignored, if it is connected (block by block) to one that is thicker
+// than this (voxels): along sharp edges, which the voxels only know to some hundredths, there are films of nothing.
+constexpr float surelyFilm = 0.12f;
+
+// Takes back what is covered in blocks from which no way through such blocks leads to a sure film.
+void dropFaintFilms(const PointBlocks& points, const std::vector<float>& thickest, std::vector<std::uint8_t>& covered) {
+    std::vector<std::uint8_t> kept(points.blocks.size(), 0);
+    std::vector<std::int32_t> front;
+    for (std::size_t b = 0; b < kept.size(); ++b)
+        if (thickest[b] > surelyFilm) {
+            kept[b] = 1;
+            front.push_back(static_cast<std::int32_t>(b));
+        }
+    while (!front.empty()) {
+        const openvdb::Coord block = points.blocks[front.back()].block;
+        front.pop_back();
+        for (int n = 0; n < 27; ++n) {
+            const std::int32_t next = points.lattice.at(block.offsetBy(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1));
+            if (next >= 0 && !kept[next] && thickest[next] > 0.f) {
+                kept[next] = 1;
+                front.push_back(next);
+            }
+        }
+    }
+    for (std::size_t b = 0; b < kept.size(); ++b)
+        if (!kept[b])
+            std::fill(covered.begin() + points.blocks[b].begin, covered.begin() + points.blocks[b].end,
+                      std::uint8_t(0));
+}
+
+// For every seed: whether the closing lies more than `ignore` voxels above it.
+std::vector<std::uint8_t> coveredSeeds(const DistanceTransform& surface, const ClosingBalls& balls,
+                                       const NearestPoints& nearestBall, float radius, float ignore,
+                                       Progress& progress) {
+    const PointBlocks& points = surface.seeds().points;
+    std::vector<std::uint8_t> covered(points.size(), 0);
+    std::vector<float> thickest(points.blocks.size(), 0.f);
+    tbb::enumerable_thread_specific<Searchers> scratch;
+    tbb::parallel_for(std::size_t(0), points.blocks.size(), [&](std::size_t b) {
+        if (progress.cancelled())
+            return;
+        const PointBlocks::Block& block = points.blocks[b];
+        std::uint64_t mask[8] = {};
+        bool any = false;
+        // The corners of a seed's cell that lie in the block: near an edge each may belong to another side of it.
+        const auto cornerOf = [&](std::uint32_t s, int n) {
+            const auto at = [](float v, int step) { return std::clamp(int(std::floor(v)) + step, 0, 7); };
+            return 64 * at(points.x[s], n >> 2) + 8 * at(points.y[s], (n >> 1) & 1) + at(points.z[s], n & 1);
+        };
+        for (std::uint32_t s = block.begin; s < block.end; ++s)
+            if (!balls.touches(static_cast<std::int32_t>(s))) {
+                for (int n = 0; n < 8; ++n)
+                    mask[cornerOf(s, n) >> 6] |= std::uint64_t(1) << (cornerOf(s, n) & 63);
+                covered[s] = 1;
+                any = true;
+            }
+        if (!any)
+            return;
+        NearestInBlock& near = scratch.local().balls;
+        SearchWindow window;
+        window.mask = mask;
+        window.furthest = 2.f * radius + 8.f;
+        nearestBall.search(block.block, window, near);
+        for (std::uint32_t s = block.begin; s < block.end; ++s)
+            if (covered[s]) {
+                const Imath::V3f x(points.x[s], points.y[s], points.z[s]);
+                std::int32_t centre = -1;
+                float least = infinite;
+                for (int n = 0; n < 8; ++n) {
+                    const std::int32_t candidate = near.point[cornerOf(s, n)];
+                    if (candidate < 0)
+                        continue;
+                    const Imath::V3f apart = balls.centres().from(block.block, candidate) - x;
+                    if (apart.dot(apart) < least) {
+                        least = apart.dot(apart);
+                        centre = candidate;
+                    }
+                }
+                const float film = centre < 0 ? 8.f : balls.distance(block.block, x, centre) - radius;
+                covered[s] = film > ignore;
+                // A seed on an edge may lie on a chord below it: what is surely a film is so on the faces beside it too.
+                if (covered[s])
+                    thickest[b] = std::max(thickest[b], surface.seeds().patches[s].bentness() > 0.3f
+                                                            ? std::min(film, 0.5f * surelyFilm)
+                                                            : film);
+            }
+    });
+    progress.checkpoint();
+    dropFaintFilms(points, thickest, covered);
+    return covered;
+}
+
+} // namespace
+
+Closing closeInterface(LayerVolume& volume, int k, const ClosingOptions& options, Progress& progress) {
+    if (!(options.radius > 0.0))
+        throw RunError("closing", "the ball's radius must be positive", "give a length of the model, such as 0.2mm");
+    NestGrids& grids = volume.grids();
+    const double voxelSize = volume.scale().voxelSize;
+    const auto radius = static_cast<float>(options.radius / voxelSize), ignore = static_cast<float>(options.ignoreVoxels);
+    const auto margin = static_cast<float>(options.marginVoxels);
+    const auto source = [&]() -> const openvdb::FloatGrid& {
+        return k < 0 ? *grids.base : k == 0 ? grids.floor() : *grids.interfaces[k - 1];
+    };
+
+    std::vector<Film> films;
+    Closing closing;
+    {
+        const DistanceTransform surface(source(), voxelSize);
+        progress.checkpoint();
+        const ClosingBalls balls(surface, radius, options.global, progress);
+        const NearestPoints nearestBall(balls.centres());
+        const std::vector<std::uint8_t> covered =
+            coveredSeeds(surface, balls, nearestBall, radius, ignore, progress);
+
+        // A film's voxel is nearer than r to the surface, at a seed that the closing covers.
+        const PointBlocks& points = surface.seeds().points;
+        openvdb::CoordBBox box = points.lattice.box();
+        const int reach = static_cast<int>(std::ceil((radius + margin) / 8.f));
+        box.expand(reach);
+        BlockBox marks(box);
+        bool any = false;
+        for (const PointBlocks::Block& block : points.blocks)
+            if (std::any_of(covered.begin() + block.begin, covered.begin() + block.end, [](auto c) { return c != 0; })) {
+                marks.set(block.block, 0);
+                any = true;
+            }
+        std::vector<openvdb::Coord> blocks;
+        if (any) {
+            widenMarks(marks, reach);
+            for (std::size_t s = 0; s < marks.numbers().size(); ++s)
+                if (marks.numbers()[s] >= 0)
+                    blocks.push_back(marks.blockOf(s));
+        }
+        std::vector<std::unique_ptr<Film>> found(blocks.size());
+        tbb::enumerable_thread_specific<Searchers> scratch;
+        const LevelSetBlocks& levelSet = surface.levelSet();
+        tbb::parallel_for(std::size_t(0), blocks.size(), [&](std::size_t n) {
+            const openvdb::Coord& block = blocks[n];
+            const FloatLeaf* leaf = levelSet.leafAt(block);
+            if ((!leaf && levelSet.fillAt(block) < 0.f) || progress.cancelled())
+                return;
+            std::uint64_t wanted[8], active[8] = {};
+            std::fill(wanted, wanted + 8, ~std::uint64_t(0));
+            if (leaf)
+                for (int pos = 0; pos < 512; ++pos) {
+                    const std::uint64_t bit = std::uint64_t(1) << (pos & 63);
+                    if (leaf->isValueOn(static_cast<openvdb::Index>(pos)))
+                        active[pos >> 6] |= bit;
+                    else if (!(leaf->buffer().data()[pos] > 0.f))
+                        wanted[pos >> 6] &= ~bit;
+                }
+            keepWithin(grids.sides, block, wanted);
+            Searchers& search = scratch.local();
+            SearchWindow window;
+            window.mask = wanted;
+            window.furthest = radius + margin;
+            window.relevant = covered.data();
+            surface.nearest(block, window, search.seeds);
+            if (!search.seeds.any)
+                return;
+            std::uint64_t filmed[8] = {};
+            bool filmHere = false;
+            for (int pos = 0; pos < 512; ++pos)
+                if ((wanted[pos >> 6] >> (pos & 63) & 1) && search.seeds.point[pos] >= 0 &&
+                    covered[search.seeds.point[pos]]) {
+                    filmed[pos >> 6] |= std::uint64_t(1) << (pos & 63);
+                    filmHere = true;
+                }
+            if (!filmHere)
+                return;
+            SearchWindow around;
+            around.mask = filmed;
+            around.nearest = radius - margin - 1.f;
+            around.furthest = 2.f * radius + 8.f;
+            nearestBall.search(block, around, search.balls);
+            auto film = std::make_unique<Film>();
+            film->block = block;
+            film->missing.fill(0);
+            film->level.fill(infinite);
+            bool some = false;
+            for (int pos = 0; pos < 512; ++pos) {
+                const std::uint64_t bit = std::uint64_t(1) << (pos & 63);
+                if (!(filmed[pos >> 6] & bit))
+                    continue;
+                const std::int32_t centre = search.balls.point[pos];
+                if (centre == NearestInBlock::closer)
+                    continue; // in the air, far above the film
+                const Imath::V3f x(float(pos >> 6), float((pos >> 3) & 7), float(pos & 7));
+                // What no ball comes near is filled.
+                const float level = centre < 0 ? -radius - 8.f : radius - balls.distance(block, x, centre);
+                const bool isActive = active[pos >> 6] & bit;
+                const float here = isActive ? leaf->buffer().data()[pos] / static_cast<float>(voxelSize) : infinite;
+                if (isActive ? here - level <= ignore : level > margin)
+                    continue;
+                film->level[pos] = level;
+                if (!isActive)
+                    film->missing[pos >> 6] |= bit;
+                some = true;
+            }
+            if (some)
+                found[n] = std::move(film);
+        });
+        progress.checkpoint();
+        for (auto& film : found)
+            if (film)
+                films.push_back(std::move(*film));
+    }
+    closing.changed = !films.empty();
+
+    std::vector<BlockMask> missing;
+    for (const Film& film : films)
+        if (std::any_of(film.missing.begin(), film.missing.end(), [](std::uint64_t word) { return word != 0; }))
+            missing.push_back({film.block, film.missing});
+    if (!missing.empty()) {
+        const double level = baseLevelForGrowth(volume);
+        addToBand(volume, missing, DistanceTransform(*grids.base, voxelSize, level), level);
+        closing.grewBand = true;
+    }
+
+    openvdb::CoordBBox box;
+    for (const Film& film : films)
+        box.expand(film.block);
+    BlockBox filmAt(box);
+    for (std::size_t n = 0; n < films.size(); ++n)
+        filmAt.set(films[n].block, static_cast<std::int32_t>(n));
+    const auto leaves = leavesOf(source().tree());
+    std::vector<std::size_t> start(leaves.size() + 1, 0);
+    for (std::size_t n = 0; n < leaves.size(); ++n)
+        start[n + 1] = start[n] + leaves[n]->onVoxelCount();
+    closing.level.resize(start.back());
+    tbb::parallel_for(std::size_t(0), leaves.size(), [&](std::size_t n) {
+        const std::int32_t number = films.empty() ? -1 : filmAt.at(openvdb::Coord(leaves[n]->origin() >> 3));
+        const float* phi = leaves[n]->buffer().data();
+        std::size_t at = start[n];
+        forActive(*leaves[n], [&](openvdb::Index pos) {
+            const float closed = number < 0 ? infinite : films[number].level[pos] * static_cast<float>(voxelSize);
+            closing.level[at++] = std::min(phi[pos], closed);
+        });
+    });
+    return closing;
+}
+
+} // namespace patina

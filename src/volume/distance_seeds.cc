@@ -1,0 +1,384 @@
+#include "volume/distance_seeds.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace patina {
+
+namespace {
+
+constexpr int padLow = 1, padHigh = 2, padded = 8 + padLow + padHigh; // 11: a cell's corners and what lies around them
+
+struct Seed {
+    float x, y, z;
+    SurfacePatch patch;
+};
+
+// The trilinear interpolant of eight corners (x slowest) and its gradient.
+Imath::V3f trilinear(const float* c, const Imath::V3f& p, float& value) {
+    const float c00 = c[0] + p.z * (c[1] - c[0]), c01 = c[2] + p.z * (c[3] - c[2]);
+    const float c10 = c[4] + p.z * (c[5] - c[4]), c11 = c[6] + p.z * (c[7] - c[6]);
+    const float c0 = c00 + p.y * (c01 - c00), c1 = c10 + p.y * (c11 - c10);
+    const float d0 = (c[1] - c[0]) + p.y * ((c[3] - c[2]) - (c[1] - c[0]));
+    const float d1 = (c[5] - c[4]) + p.y * ((c[7] - c[6]) - (c[5] - c[4]));
+    value = c0 + p.x * (c1 - c0);
+    return {c1 - c0, (c01 - c00) + p.x * ((c11 - c10) - (c01 - c00)), d0 + p.x * (d1 - d0)};
+}
+
+// A point of the zero set in a cell whose corners differ in sign: the middle of the crossed edges, brought onto the
+// trilinear zero set by Newton steps that stay within the cell.
+Imath::V3f pointInCell(const float* c) {
+    static constexpr int edges[12][2] = {{0, 1}, {2, 3}, {4, 5}, {6, 7}, {0, 2}, {1, 3},
+                                         {4, 6}, {5, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+    Imath::V3f sum(0.f);
+    int crossed = 0;
+    for (const auto& edge : edges) {
+        const float a = c[edge[0]], b = c[edge[1]];
+        if ((a <= 0.f) == (b <= 0.f))
+            continue;
+        const float share = a / (a - b);
+        const Imath::V3f from(float(edge[0] >> 2), float((edge[0] >> 1) & 1), float(edge[0] & 1)),
+            to(float(edge[1] >> 2), float((edge[1] >> 1) & 1), float(edge[1] & 1));
+        sum += from + (to - from) * share;
+        ++crossed;
+    }
+    Imath::V3f p = sum / float(crossed);
+    for (int step = 0; step < 4; ++step) {
+        float value;
+        const Imath::V3f gradient = trilinear(c, p, value);
+        const float squared = gradient.dot(gradient);
+        if (!(squared > 1e-12f))
+            break;
+        p -= gradient * (value / squared);
+        p.x = std::clamp(p.x, 0.f, 1.f);
+        p.y = std::clamp(p.y, 0.f, 1.f);
+        p.z = std::clamp(p.z, 0.f, 1.f);
+    }
+    return p;
+}
+
+// Brings a point of the trilinear zero set to that of the smooth field whose samples the corners are, and gives normal
+// and curvature there. Along axis i the interpolant of a field lies above it by p_i (1 - p_i) / 2 times the second
+// derivative, for want of which a sphere of radius R would lose 0.2 / R. That derivative is the harmonic mean of the
+// second differences at the line's two ends: of second order where the field is smooth, and that of the smooth side
+// next to an edge, so that faces stay flat up to their edges. \param at  the cell's first corner in the padded block
+SurfacePatch patchAt(const float* at, const float* c, Imath::V3f& p, float nowhere) {
+    constexpr int stride[3] = {padded * padded, padded, 1};
+    SurfacePatch patch;
+    patch.shape.fill(0.f);
+    patch.reach = SurfacePatch::furthestReach;
+    float second[3]; // d²/dx_i² at p
+    for (int axis = 0; axis < 3; ++axis) {
+        const int s = stride[axis], u = (axis + 1) % 3, w = (axis + 2) % 3;
+        float line[4];
+        for (int n = 0; n < 4; ++n) {
+            const float* v = at + (n >> 1) * stride[u] + (n & 1) * stride[w];
+            const bool known = std::abs(v[-s]) < nowhere && std::abs(v[2 * s]) < nowhere;
+            const float a = v[-s] - 2.f * v[0] + v[s], b = v[0] - 2.f * v[s] + v[2 * s];
+            line[n] = known && a * b > 0.f ? 2.f * a * b / (a + b) : 0.f;
+        }
+        const float low = line[0] + p[w] * (line[1] - line[0]), high = line[2] + p[w] * (line[3] - line[2]);
+        second[axis] = low + p[u] * (high - low);
+    }
+    float value;
+    Imath::V3f gradient = trilinear(c, p, value);
+    for (int axis = 0; axis < 3; ++axis)
+        gradient[axis] += (p[axis] - 0.5f) * second[axis];
+    const float slope = gradient.length();
+    patch.normal = slope > 0.f ? gradient / slope : Imath::V3f(0.f, 0.f, 1.f);
+    if (!(slope > 1e-6f))
+        return patch;
+
+    // Mixed second derivatives are those of the interpolant.
+    const float alternating = c[7] - c[6] - c[5] + c[4] - c[3] + c[2] + c[1] - c[0];
+    const float xy = (c[6] - c[4] - c[2] + c[0]) + p.z * alternating, xz = (c[5] - c[4] - c[1] + c[0]) + p.y * alternating,
+                yz = (c[3] - c[2] - c[1] + c[0]) + p.x * alternating;
+    const float h[3][3] = {{second[0], xy, xz}, {xy, second[1], yz}, {xz, yz, second[2]}};
+    const float above = 0.5f * (p.x * (1.f - p.x) * second[0] + p.y * (1.f - p.y) * second[1] +
+                                p.z * (1.f - p.z) * second[2]);
+    p += patch.normal * std::clamp(above / slope, -0.2f, 0.2f);
+
+    // S = P H P / |gradient|, P = 1 - n n^T; no sharper than a radius of one voxel.
+    const Imath::V3f n = patch.normal;
+    const Imath::V3f hn(h[0][0] * n.x + h[0][1] * n.y + h[0][2] * n.z, h[1][0] * n.x + h[1][1] * n.y + h[1][2] * n.z,
+                        h[2][0] * n.x + h[2][1] * n.y + h[2][2] * n.z);
+    const float nhn = n.dot(hn);
+    float s[6], squares = 0.f;
+    int at6 = 0;
+    for (int i = 0; i < 3; ++i)
+        for (int j = i; j < 3; ++j, ++at6) {
+            s[at6] = (h[i][j] - n[i] * hn[j] - hn[i] * n[j] + nhn * n[i] * n[j]) / slope;
+            squares += s[at6] * s[at6] * (i == j ? 1.f : 2.f);
+        }
+    const float curvature = std::sqrt(squares), scale = curvature > 1.f ? 1.f / curvature : 1.f;
+    patch.reach = std::min(SurfacePatch::furthestReach, SurfacePatch::furthestBend / std::max(curvature, 1e-6f));
+    for (int i = 0; i < 6; ++i)
+        patch.shape[i] = s[i] * scale;
+    return patch;
+}
+
+void seedsOfBlock(const LevelSetBlocks& levelSet, const openvdb::Coord& block, float iso, float voxelsPerUnit,
+                  float nowhere, std::vector<Seed>& seeds) {
+    float values[padded * padded * padded];
+    levelSet.padded(block, padLow, padHigh, values);
+    for (float& v : values)
+        v = (v - iso) * voxelsPerUnit;
+    const auto corner = [&](int i, int j, int k) {
+        return values + ((i + padLow) * padded + j + padLow) * padded + k + padLow;
+    };
+    for (int i = 0; i < 8; ++i)
+        for (int j = 0; j < 8; ++j) {
+            // Signs of the row's four lines, a bit for each voxel: cells where not all eight corners agree.
+            unsigned all = ~0u, any = 0;
+            for (int line = 0; line < 4; ++line) {
+                const float* v = corner(i + (line >> 1), j + (line & 1), 0);
+                unsigned signs = 0;
+                for (int k = 0; k < 9; ++k)
+                    signs |= unsigned(v[k] <= 0.f) << k;
+                all &= signs;
+                any |= signs;
+            }
+            const unsigned mixed = (any | any >> 1) & ~(all & all >> 1) & 0xff;
+            for (int k = 0; k < 8; ++k) {
+                if (!(mixed >> k & 1))
+                    continue;
+                float c[8];
+                for (int n = 0; n < 8; ++n)
+                    c[n] = *corner(i + (n >> 2), j + ((n >> 1) & 1), k + (n & 1));
+                // Where the band ends (the sides of a region) a change of sign is no surface.
+                if (std::any_of(c, c + 8, [&](float v) { return std::abs(v) >= nowhere; }))
+                    continue;
+                Imath::V3f p = pointInCell(c);
+                const SurfacePatch patch = patchAt(corner(i, j, k), c, p, nowhere);
+                seeds.push_back({float(i) + p.x, float(j) + p.y, float(k) + p.z, patch});
+            }
+        }
+}
+
+// Whether a block may hold cells that the iso surface crosses.
+bool mayCross(const LevelSetBlocks& levelSet, std::size_t n, float iso, float near) {
+    const FloatLeaf& leaf = *levelSet.leaves()[n];
+    const float* v = leaf.buffer().data();
+    int inside = 0, close = 0;
+    for (int i = 0; i < 512; ++i) {
+        inside += v[i] <= iso;
+        close += std::abs(v[i] - iso) < near;
+    }
+    if (close || (inside > 0 && inside < 512))
+        return true;
+    // All of one sign and far from the surface; an interface that is no distance may still jump at the block's side.
+    float around[9 * 9 * 9];
+    levelSet.padded(openvdb::Coord(leaf.origin() >> 3), 0, 1, around);
+    int within = 0;
+    for (const float value : around)
+        within += value <= iso;
+    return within > 0 && within < 9 * 9 * 9;
+}
+
+// The plane or planes that meet near a seed on a sharp crease, and where they do.
+struct Crease {
+    Imath::V3f point;
+    Imath::V3f along; ///< unit; zero where three planes meet
+    float reach;      ///< how far it goes on both ways
+};
+
+// The point nearest to the origin that minimises the squared distances to some of the planes normal · (p - place) = 0
+// (Garland and Heckbert's quadric): (sum n n^T + e) q = sum n (n · place), where e keeps q near the origin along an edge.
+template <typename Chosen>
+Imath::V3f meetingPoint(const Imath::V3f* normals, const Imath::V3f* places, int count, Chosen chosen) {
+    double A[3][3] = {{1e-3, 0.0, 0.0}, {0.0, 1e-3, 0.0}, {0.0, 0.0, 1e-3}}, r[3] = {};
+    for (int i = 0; i < count; ++i) {
+        if (!chosen(i))
+            continue;
+        const double d = double(normals[i].dot(places[i]));
+        for (int x = 0; x < 3; ++x) {
+            r[x] += double(normals[i][x]) * d;
+            for (int y = 0; y < 3; ++y)
+                A[x][y] += double(normals[i][x]) * double(normals[i][y]);
+        }
+    }
+    const double c00 = A[1][1] * A[2][2] - A[1][2] * A[2][1], c01 = A[0][2] * A[2][1] - A[0][1] * A[2][2],
+                 c02 = A[0][1] * A[1][2] - A[0][2] * A[1][1];
+    const double c11 = A[0][0] * A[2][2] - A[0][2] * A[2][0], c12 = A[0][2] * A[1][0] - A[0][0] * A[1][2],
+                 c22 = A[0][0] * A[1][1] - A[0][1] * A[1][0];
+    const double determinant = A[0][0] * c00 + A[1][0] * c01 + A[2][0] * c02; // > 0: A is positive definite
+    return {float((c00 * r[0] + c01 * r[1] + c02 * r[2]) / determinant),
+            float((c01 * r[0] + c11 * r[1] + c12 * r[2]) / determinant),
+            float((c02 * r[0] + c12 * r[1] + c22 * r[2]) / determinant)};
+}
+
+// Values of a level set say where faces are, but no cell knows the edge between two: its seed lies on a chord. Where a
+// seed is so curved that it can only be on an edge, the planes of the flat seeds around it are intersected.
+bool findCrease(const SurfaceSeeds& seeds, std::uint32_t s, Crease& crease) {
+    constexpr float reach = 2.2f, flat = 0.15f;
+    const PointBlocks& points = seeds.points;
+    const openvdb::Coord& home = points.blocks[points.blockOf[s]].block;
+    const Imath::V3f here(points.x[s], points.y[s], points.z[s]);
+    std::array<Imath::V3f, 64> normals, places;
+    int count = 0;
+    const auto side = [](float v, int& from, int& to) {
+        from = v < reach ? -1 : 0;
+        to = v > 8.f - reach ? 1 : 0;
+    };
+    int from[3], to[3];
+    for (int axis = 0; axis < 3; ++axis)
+        side(here[axis], from[axis], to[axis]);
+    for (int i = from[0]; i <= to[0]; ++i)
+        for (int j = from[1]; j <= to[1]; ++j)
+            for (int k = from[2]; k <= to[2]; ++k) {
+                const std::int32_t number = points.lattice.at(home.offsetBy(i, j, k));
+                if (number < 0)
+                    continue;
+                const Imath::V3f origin(8.f * float(i), 8.f * float(j), 8.f * float(k));
+                for (std::uint32_t o = points.blocks[number].begin; o < points.blocks[number].end; ++o) {
+                    const Imath::V3f place = origin + Imath::V3f(points.x[o], points.y[o], points.z[o]);
+                    const Imath::V3f apart = place - here;
+                    if (apart.dot(apart) > reach * reach || seeds.patches[o].bentness() > flat || count == 64)
+                        continue;
+                    normals[count] = seeds.patches[o].normal;
+                    places[count++] = apart;
+                }
+            }
+    if (count < 4)
+        return false;
+    // The faces that meet: that of the nearest flat seed, the nearest of another direction, the nearest of a third that
+    // leaves the plane of those two and makes a corner.
+    const auto nearestWhere = [&](auto condition) {
+        int found = -1;
+        for (int i = 0; i < count; ++i)
+            if (condition(i) && (found < 0 || places[i].dot(places[i]) < places[found].dot(places[found])))
+                found = i;
+        return found;
+    };
+    const int a = nearestWhere([](int) { return true; });
+    const int b = nearestWhere([&](int i) { return normals[i].dot(normals[a]) < 0.9f; });
+    if (b < 0 || normals[a].dot(normals[b]) < -0.8f)
+        return false;
+    crease.along = normals[a].cross(normals[b]).normalized();
+    const int c = nearestWhere([&](int i) { return std::abs(normals[i].dot(crease.along)) > 0.3f; });
+    crease.reach = SurfacePatch::furthestReach;
+    const auto belongs = [&](int i, int face) { return face >= 0 && normals[i].dot(normals[face]) > 0.97f; };
+    const Imath::V3f edge = meetingPoint(normals.data(), places.data(), count,
+                                         [&](int i) { return belongs(i, a) || belongs(i, b); });
+    crease.point = edge;
+    if (c >= 0) {
+        // Where along the edge the third face cuts it: a corner there, or an edge that ends there.
+        const float end = normals[c].dot(places[c] - edge) / normals[c].dot(crease.along);
+        if (std::abs(end) < 0.5f) {
+            crease.point = meetingPoint(normals.data(), places.data(), count, [&](int i) {
+                return belongs(i, a) || belongs(i, b) || belongs(i, c);
+            });
+            crease.along = Imath::V3f(0.f);
+        } else {
+            crease.reach = std::min(crease.reach, std::abs(end));
+        }
+    }
+    const Imath::V3f q = crease.point;
+    // Further away it is the corner of a rounded edge, not of a sharp one.
+    if (!(q.dot(q) < 0.65f * 0.65f) || q.dot(seeds.patches[s].normal) < 0.f)
+        return false; // in a groove the walls are nearer than its bottom, and seeds on them serve better
+    crease.point = here + q;
+    return true;
+}
+
+// Moves seeds on sharp convex creases onto them, as pieces of a line (or a point, in a corner).
+void sharpenCreases(SurfaceSeeds& seeds) {
+    PointBlocks& points = seeds.points;
+    std::vector<std::vector<std::pair<std::uint32_t, Crease>>> found(points.blocks.size());
+    tbb::parallel_for(std::size_t(0), points.blocks.size(), [&](std::size_t n) {
+        Crease crease;
+        for (std::uint32_t s = points.blocks[n].begin; s < points.blocks[n].end; ++s)
+            if (seeds.patches[s].bentness() > 0.5f && findCrease(seeds, s, crease))
+                found[n].emplace_back(s, crease);
+    });
+    tbb::parallel_for(std::size_t(0), points.blocks.size(), [&](std::size_t n) {
+        for (const auto& [s, crease] : found[n]) {
+            // The point may leave its block by a little; its block's number stays.
+            points.x[s] = crease.point.x;
+            points.y[s] = crease.point.y;
+            points.z[s] = crease.point.z;
+            SurfacePatch& patch = seeds.patches[s];
+            patch.crease = true;
+            patch.shape = {crease.along.x, crease.along.y, crease.along.z, 0.f, 0.f, 0.f};
+            patch.reach = crease.reach;
+        }
+    });
+    // Faces end at their creases.
+    tbb::parallel_for(std::size_t(0), points.blocks.size(), [&](std::size_t n) {
+        const openvdb::Coord& block = points.blocks[n].block;
+        for (int around = 0; around < 27; ++around) {
+            const openvdb::Coord step(around / 9 - 1, around / 3 % 3 - 1, around % 3 - 1);
+            const std::int32_t other = points.lattice.at(block + step);
+            if (other < 0 || found[other].empty())
+                continue;
+            for (std::uint32_t s = points.blocks[n].begin; s < points.blocks[n].end; ++s) {
+                SurfacePatch& patch = seeds.patches[s];
+                if (patch.crease)
+                    continue;
+                const Imath::V3f here(points.x[s], points.y[s], points.z[s]);
+                for (const auto& [c, crease] : found[other]) {
+                    const Imath::V3f apart = crease.point +
+                                             Imath::V3f(float(step.x()), float(step.y()), float(step.z())) * 8.f - here;
+                    if (apart.dot(apart) > 4.f)
+                        continue;
+                    const Imath::V3f across = apart - crease.along * apart.dot(crease.along);
+                    patch.reach = std::min(patch.reach, across.length());
+                }
+            }
+        }
+    });
+}
+
+} // namespace
+
+SurfaceSeeds makeSurfaceSeeds(const LevelSetBlocks& levelSet, double voxelSize, double iso) {
+    const std::size_t leaves = levelSet.leaves().size();
+    std::vector<std::vector<Seed>> found(leaves);
+    const auto level = static_cast<float>(iso), voxelsPerUnit = static_cast<float>(1.0 / voxelSize);
+    const float nowhere = (0.999f * levelSet.background() - std::abs(level)) * voxelsPerUnit;
+    const auto near = static_cast<float>(2.0 * voxelSize);
+    tbb::parallel_for(std::size_t(0), leaves, [&](std::size_t n) {
+        if (mayCross(levelSet, n, level, near))
+            seedsOfBlock(levelSet, openvdb::Coord(levelSet.leaves()[n]->origin() >> 3), level, voxelsPerUnit, nowhere,
+                         found[n]);
+    });
+
+    SurfaceSeeds seeds;
+    openvdb::CoordBBox box;
+    std::vector<std::size_t> start(leaves + 1, 0);
+    for (std::size_t n = 0; n < leaves; ++n) {
+        start[n + 1] = start[n] + found[n].size();
+        if (!found[n].empty())
+            box.expand(openvdb::Coord(levelSet.leaves()[n]->origin() >> 3));
+    }
+    PointBlocks& points = seeds.points;
+    points.lattice = BlockBox(box);
+    for (std::size_t n = 0; n < leaves; ++n)
+        if (!found[n].empty()) {
+            const openvdb::Coord block(levelSet.leaves()[n]->origin() >> 3);
+            points.lattice.set(block, static_cast<std::int32_t>(points.blocks.size()));
+            points.blocks.push_back(
+                {block, static_cast<std::uint32_t>(start[n]), static_cast<std::uint32_t>(start[n + 1])});
+        }
+    points.resize(start[leaves]);
+    seeds.patches.resize(start[leaves]);
+    tbb::parallel_for(std::size_t(0), leaves, [&](std::size_t n) {
+        const std::int32_t number =
+            found[n].empty() ? -1 : points.lattice.at(openvdb::Coord(levelSet.leaves()[n]->origin() >> 3));
+        for (std::size_t i = 0; i < found[n].size(); ++i) {
+            const Seed& seed = found[n][i];
+            points.x[start[n] + i] = seed.x;
+            points.y[start[n] + i] = seed.y;
+            points.z[start[n] + i] = seed.z;
+            points.blockOf[start[n] + i] = static_cast<std::uint32_t>(number);
+            seeds.patches[start[n] + i] = seed.patch;
+        }
+    });
+    if (iso == 0.0) // parallel surfaces of sharp edges are round
+        sharpenCreases(seeds);
+    return seeds;
+}
+
+} // namespace patina

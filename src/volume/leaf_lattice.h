@@ -1,0 +1,66 @@
+#pragma once
+// Leaf numbers by place. Includes OpenVDB: for volume/, operators/ and export/ sources.
+
+#include "volume/nest_grids.h"
+
+#include <vector>
+
+namespace patina {
+
+/// The leaves of one topology in a box of 8³ blocks: which number (in leavesOf()'s order) the leaf at a block has.
+class LeafLattice {
+  public:
+    explicit LeafLattice(const std::vector<const FloatLeaf*>& leaves) {
+        for (const FloatLeaf* leaf : leaves)
+            box_.expand(openvdb::Coord(leaf->origin() >> 3));
+        if (leaves.empty())
+            box_ = openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(0));
+        size_ = box_.dim();
+        number_.assign(std::size_t(size_.x()) * size_.y() * size_.z(), -1);
+        for (std::size_t n = 0; n < leaves.size(); ++n)
+            number_[slot(leaves[n]->origin() >> 3)] = static_cast<std::int32_t>(n);
+    }
+
+    const openvdb::CoordBBox& box() const { return box_; } ///< in blocks (voxels / 8)
+    bool holds(int i, int j, int k) const { return box_.isInside(openvdb::Coord(i, j, k)); }
+    std::size_t slot(const openvdb::Coord& block) const {
+        const openvdb::Coord c = block - box_.min();
+        return (std::size_t(c.x()) * size_.y() + c.y()) * size_.z() + c.z();
+    }
+
+    /// The number of the leaf at a block; a negative one where there is none (-1 unless marked otherwise).
+    std::int32_t at(int i, int j, int k) const {
+        i -= box_.min().x();
+        j -= box_.min().y();
+        k -= box_.min().z();
+        if (unsigned(i) >= unsigned(size_.x()) || unsigned(j) >= unsigned(size_.y()) ||
+            unsigned(k) >= unsigned(size_.z()))
+            return -1;
+        return number_[(std::size_t(i) * size_.y() + j) * size_.z() + k];
+    }
+    void mark(std::size_t slot, std::int32_t value) { number_[slot] = value; }
+    std::int32_t marked(std::size_t slot) const { return number_[slot]; }
+
+  private:
+    openvdb::CoordBBox box_;
+    openvdb::Coord size_;
+    std::vector<std::int32_t> number_;
+};
+
+/// Calls `visit(position)` for every active voxel of a leaf in order. Rows without gaps run as plain loops of 64, which
+/// the compiler can turn into vector instructions.
+template <typename Leaf, typename Visit>
+inline void forActive(const Leaf& leaf, Visit visit) {
+    for (openvdb::Index w = 0; w < 8; ++w) {
+        openvdb::Index64 word = leaf.getValueMask().template getWord<openvdb::Index64>(w);
+        if (word == ~openvdb::Index64(0)) {
+            for (openvdb::Index i = w * 64; i < w * 64 + 64; ++i)
+                visit(i);
+        } else {
+            for (; word; word &= word - 1)
+                visit(w * 64 + openvdb::util::FindLowestOn(word));
+        }
+    }
+}
+
+} // namespace patina
