@@ -1,0 +1,183 @@
+#include "operators/fields/field_store.h"
+
+#include "base/errors.h"
+#include "base/hash.h"
+#include "operators/fields/accessibility.h"
+#include "operators/fields/field_grid.h"
+#include "operators/fields/surface_extraction.h"
+#include "operators/fields/wetness.h"
+#include "volume/band.h"
+#include "volume/nest_grids.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace patina {
+
+using Imath::V3d;
+using Imath::V3f;
+
+namespace {
+
+/// Below this height of the stack, voxels, fields are those of the metal.
+constexpr double thinStack = 0.25;
+/// Rays start so far from the surface, voxels: it and the triangles that rays meet differ where edges are sharp.
+constexpr double clearanceVoxels = 0.3;
+/// Creases that hold water are those a ball of this part of the model's height cannot enter.
+constexpr double creaseRadius = 0.02;
+
+std::string lengthForName(double um) {
+    if (um >= 1e6)
+        return fmt::format("{:g}m", um * 1e-6);
+    if (um >= 1e3)
+        return fmt::format("{:g}mm", um * 1e-3);
+    return fmt::format("{:g}um", um);
+}
+
+std::uint64_t hashOf(const openvdb::FloatGrid& grid) {
+    ContentHash hash;
+    for (const FloatLeaf* leaf : leavesOf(grid.tree()))
+        hash.add(leaf->buffer().data(), FloatLeaf::SIZE * sizeof(float));
+    return hash.digest();
+}
+
+void requireUp(const V3d& up) {
+    if (!(up.length() > 0.0))
+        throw RunError("exposure and wetness", "the model has no up axis", "give it by --up");
+}
+
+} // namespace
+
+std::string AccessibilityRequest::fieldName() const {
+    return "accessibility_" + lengthForName(radiusUm) + (global ? "_global" : "");
+}
+
+std::string ExposureRequest::fieldName(const std::string& word) const {
+    const SunAndSky usual;
+    std::string name = word;
+    const auto add = [&](const std::string& part) { name += "_" + part; };
+    if (light.sky)
+        add(*light.sky == overcastSky  ? "overcast"
+            : *light.sky == uniformSky ? "uniform"
+            : *light.sky == clearSky   ? "clear"
+                                       : fmt::format("sky{}", *light.sky));
+    if (!light.sun)
+        add("nosun");
+    if (light.latitudeDegrees != usual.latitudeDegrees)
+        add(fmt::format("latitude{:g}", light.latitudeDegrees));
+    if (light.firstMonth != 1 || light.lastMonth != 12)
+        add(fmt::format("months{}to{}", light.firstMonth, light.lastMonth));
+    if (light.firstHour != 0.0 || light.lastHour != 24.0)
+        add(fmt::format("hours{:g}to{:g}", light.firstHour, light.lastHour));
+    if (light.clouds != usual.clouds)
+        add(fmt::format("clouds{:g}", light.clouds));
+    if (north)
+        add(fmt::format("north{:g}_{:g}_{:g}", north->x, north->y, north->z));
+    if (rays != 256)
+        add(fmt::format("rays{}", rays));
+    if (ground)
+        add("ground");
+    return name;
+}
+
+const FieldStore::Surface& FieldStore::presentSurface() {
+    LayerVolume& volume = *scene_.volume;
+    const int layer = stackHeightVoxels(volume) > thinStack ? volume.layerCount() : 0;
+    const std::uint64_t hash = hashOf(*volume.grids().nest()[layer]);
+    if (!surfaceKnown_ || hash != surface_.hash) {
+        surface_.voxels = findSurfaceVoxels(volume, layer);
+        surface_.hash = hash;
+    }
+    surface_.layer = layer;
+    surfaceKnown_ = true;
+    return surface_;
+}
+
+const ThicknessMapPtr* FieldStore::find(const std::string& name) {
+    const Surface& surface = presentSurface();
+    const auto found = kept_.find(name);
+    return found != kept_.end() && found->second.surface == surface.hash ? &found->second.map : nullptr;
+}
+
+ThicknessMapPtr FieldStore::keep(const std::string& name, const std::vector<float>& values) {
+    storeField(*scene_.volume, name, surface_.layer, surface_.voxels, values);
+    kept_[name] = {surface_.hash, makeFieldMap(*scene_.volume, name)};
+    return kept_[name].map;
+}
+
+std::vector<float> FieldStore::accessibilityValues(const AccessibilityRequest& request, Progress& progress) {
+    if (!(request.radius > 0.0))
+        throw RunError("accessibility", "the radius must be larger than 0");
+    const double limit = request.radius / scene_.volume->scale().voxelSize;
+    auto values = accessibleRadii(*scene_.volume, surface_.voxels, surface_.layer, limit, request.global, progress);
+    for (float& value : values)
+        value = static_cast<float>(std::min(1.0, value / limit));
+    return values;
+}
+
+std::vector<float> FieldStore::gather(const LightDome& dome, const Compass& compass, const DomeGathering& options,
+                                      Progress& progress) {
+    const double voxelSize = scene_.volume->scale().voxelSize;
+    const auto run = [&](const Occlusion& occluded) {
+        return gatherDome(surface_.voxels, voxelSize, dome, compass, occluded, clearanceVoxels * voxelSize, options,
+                          progress);
+    };
+    constexpr float far = std::numeric_limits<float>::infinity();
+    if (scene_.whole)
+        return run([&](const V3f& o, const V3f& d) { return scene_.whole->occluded(o, d, 0.f, far); });
+    if (surface_.layer == 0 && !scene_.volume->grids().metal)
+        return run([&](const V3f& o, const V3f& d) { return scene_.binding->occluded(o, d); });
+    const RayScene present = extractSurface(*scene_.volume, surface_.layer);
+    return run([&](const V3f& o, const V3f& d) { return present.occluded(o, d, 0.f, far); });
+}
+
+std::vector<float> FieldStore::exposureValues(const ExposureRequest& request, Progress& progress) {
+    requireUp(scene_.up);
+    const Compass compass = Compass::from(scene_.up, request.north.value_or(Compass::usualNorth(scene_.up)));
+    DomeGathering options;
+    options.rays = request.rays;
+    options.ground = request.ground;
+    options.groundHeight = scene_.lowest;
+    return gather(makeLightDome(request.light), compass, options, progress);
+}
+
+ThicknessMapPtr FieldStore::accessibility(const AccessibilityRequest& request, Progress& progress) {
+    const std::string name = request.fieldName();
+    if (const auto* kept = find(name))
+        return *kept;
+    return keep(name, accessibilityValues(request, progress));
+}
+
+ThicknessMapPtr FieldStore::exposure(const ExposureRequest& request, Progress& progress) {
+    const std::string name = request.fieldName();
+    if (const auto* kept = find(name))
+        return *kept;
+    return keep(name, exposureValues(request, progress));
+}
+
+ThicknessMapPtr FieldStore::wetness(const ExposureRequest& request, Progress& progress) {
+    const std::string name = request.fieldName("wetness");
+    if (const auto* kept = find(name))
+        return *kept;
+    requireUp(scene_.up);
+    const double voxelSize = scene_.volume->scale().voxelSize;
+    const double height = std::max(scene_.highest - scene_.lowest, voxelSize);
+    WetnessParts parts;
+    parts.exposure = exposureValues(request, progress);
+    const Compass compass = Compass::from(scene_.up, request.north.value_or(Compass::usualNorth(scene_.up)));
+    DomeGathering rain;
+    rain.rays = 128;
+    parts.rain = gather(rainDome(), compass, rain, progress);
+    AccessibilityRequest crease;
+    crease.radius = creaseRadius * height;
+    parts.accessibility = accessibilityValues(crease, progress);
+    WetnessOptions options;
+    options.up = scene_.up.normalized();
+    options.lowest = scene_.lowest / voxelSize;
+    options.height = height / voxelSize;
+    return keep(name, patina::wetness(surface_.voxels, parts, options));
+}
+
+} // namespace patina

@@ -1,0 +1,184 @@
+#include "operators/fields/accessibility.h"
+
+#include "base/progress.h"
+#include "field_test_shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace patina {
+namespace {
+
+using Imath::V3d;
+
+struct Errors {
+    double worst = 0.0;
+    double beyondHalf = 0.0; ///< fraction of the points with an error of more than half a voxel
+    int count = 0;
+    V3d where;
+};
+
+/// Compares with a closed form wherever that is not negative. Errors in voxels, beyond 1 % of the truth.
+Errors compare(const LayerVolume& volume, double limit, const std::function<double(const V3d&)>& truth,
+               bool global = false) {
+    Progress progress;
+    const SurfaceVoxels surface = findSurfaceVoxels(volume, 0);
+    const auto radii = accessibleRadii(volume, surface, 0, limit, global, progress);
+    Errors errors;
+    for (std::size_t i = 0; i < surface.size(); ++i) {
+        const V3d p = test::toObject(V3d(surface.feet[i]));
+        double expected = truth(p);
+        if (expected < 0.0)
+            continue;
+        expected = std::min(expected, limit);
+        const double error = std::max(0.0, std::abs(radii[i] - expected) - 0.01 * expected);
+        if (error > errors.worst) {
+            errors.worst = error;
+            errors.where = p;
+        }
+        errors.beyondHalf += error > 0.5 ? 1.0 : 0.0;
+        ++errors.count;
+    }
+    errors.beyondHalf /= std::max(1, errors.count);
+    return errors;
+}
+
+bool inside(const V3d& p, double half) {
+    return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) < half;
+}
+
+TEST(Accessibility, APlaneAndAConvexBodyAreAsAccessibleAsAskedFor) {
+    const auto plane = test::volumeOf([](const V3d& p) { return p.z; }, 40);
+    EXPECT_LT(compare(*plane, 30.0, [](const V3d& p) { return inside(p, 20.0) ? 30.0 : -1.0; }).worst, 1e-6);
+    const auto ball = test::volumeOf([](const V3d& p) { return p.length() - 25.0; }, 40);
+    EXPECT_LT(compare(*ball, 30.0, [](const V3d&) { return 30.0; }).worst, 1e-6);
+}
+
+TEST(Accessibility, TheEdgesOfABoxAreAsAccessibleAsItsFaces) {
+    const auto box = test::volumeOf(
+        [](const V3d& p) {
+            const V3d q(std::abs(p.x) - 20.0, std::abs(p.y) - 16.0, std::abs(p.z) - 12.0);
+            const V3d out(std::max(q.x, 0.0), std::max(q.y, 0.0), std::max(q.z, 0.0));
+            return out.length() + std::min(std::max({q.x, q.y, q.z}), 0.0);
+        },
+        40);
+    // The level set of a sharp edge is a chain of facets as long as voxels, with creases between: some of its points
+    // are stopped by the next facet.
+    const Errors errors = compare(*box, 20.0, [](const V3d&) { return 20.0; });
+    EXPECT_LT(errors.beyondHalf, 0.02);
+}
+
+TEST(Accessibility, InsideASphereACylinderAndATorusItIsTheirRadius) {
+    for (const double radius : {4.0, 9.5, 20.0}) {
+        const auto sphere = test::volumeOf([=](const V3d& p) { return radius - p.length(); }, 36);
+        EXPECT_LT(compare(*sphere, 40.0, [=](const V3d&) { return radius; }).worst, 0.5) << radius;
+        const auto cylinder = test::volumeOf([=](const V3d& p) { return radius - std::hypot(p.x, p.z); }, 36);
+        EXPECT_LT(compare(*cylinder, 40.0, [=](const V3d& p) { return std::abs(p.y) < 12.0 ? radius : -1.0; }).worst,
+                  0.5)
+            << radius;
+    }
+    const auto torus =
+        test::volumeOf([](const V3d& p) { return 7.0 - std::hypot(std::hypot(p.x, p.y) - 18.0, p.z); }, 30);
+    EXPECT_LT(compare(*torus, 40.0, [](const V3d&) { return 7.0; }).worst, 0.5);
+}
+
+TEST(Accessibility, InAGapItIsHalfTheWidth) {
+    for (const double width : {3.0, 10.3, 24.0}) {
+        const auto gap = test::volumeOf([=](const V3d& p) { return 0.5 * width - std::abs(p.z); }, 40);
+        EXPECT_LT(compare(*gap, 40.0, [=](const V3d& p) { return inside(p, 20.0) ? 0.5 * width : -1.0; }).worst, 0.5)
+            << width;
+    }
+}
+
+TEST(Accessibility, OnTheWallsOfAGrooveItGrowsWithTheDistanceFromTheApex) {
+    for (const double degrees : {30.0, 45.0, 60.0}) {
+        const double half = degrees * M_PI / 180.0;
+        const auto groove = test::volumeOf(test::groove(half), 50);
+        const Errors errors = compare(*groove, 16.0, [=](const V3d& p) {
+            const double s = std::hypot(p.x, p.z);
+            return std::abs(p.y) < 20.0 && s < 26.0 ? s * std::tan(half) : -1.0;
+        });
+        // At the apex itself voxels round the crease.
+        EXPECT_LT(errors.worst, 0.8) << degrees << " at " << errors.where.x << ' ' << errors.where.z;
+        EXPECT_LT(errors.beyondHalf, 0.03);
+        EXPECT_GT(errors.count, 1000);
+    }
+}
+
+TEST(Accessibility, InACornerOfThreeFacesItIsTheDistanceToTheNearerWall) {
+    const auto corner = test::volumeOf([](const V3d& p) { return std::min({p.x, p.y, p.z}); }, 44);
+    const Errors errors = compare(*corner, 12.0, [](const V3d& p) {
+        const double size = std::max({p.x, p.y, p.z});
+        // Of the three coordinates one is zero on a face; the ball is as large as the smaller of the others.
+        double c[3] = {p.x, p.y, p.z};
+        std::sort(c, c + 3);
+        return size < 20.0 ? std::max(0.0, c[1]) : -1.0;
+    });
+    EXPECT_LT(errors.worst, 0.5) << errors.where.x << ' ' << errors.where.y << ' ' << errors.where.z;
+}
+
+TEST(Accessibility, InASlotFloorAndWallsAreAsTheClosedFormsSay) {
+    const double w = 16.0;
+    for (const double d : {6.0, 14.0}) {
+        const auto slot = test::volumeOf(test::slot(w, d), 40);
+        const Errors errors = compare(*slot, 30.0, [=](const V3d& p) {
+            if (std::abs(p.y) > 10.0 || std::abs(p.x) > 12.0 || p.z > -1.5)
+                return -1.0;
+            const double x0 = 0.5 * w - std::abs(p.x), z = p.z + d;
+            if (z < x0) // floor
+                return x0 <= d ? x0 : (x0 * x0 + d * d) / (2.0 * d);
+            return std::min(z, 0.5 * w);
+        });
+        EXPECT_LT(errors.worst, 0.8) << "depth " << d << " at " << errors.where.x << ' ' << errors.where.z;
+        EXPECT_LT(errors.beyondHalf, 0.01);
+    }
+}
+
+TEST(Accessibility, OnTheFloorOfAWellItIsThatOfASlot) {
+    const double radius = 12.0, d = 7.0;
+    const auto well = test::volumeOf(
+        [=](const V3d& p) { return std::max(p.z, -std::max(std::hypot(p.x, p.y) - radius, -d - p.z)); }, 36);
+    const Errors errors = compare(*well, 30.0, [=](const V3d& p) {
+        const double x0 = radius - std::hypot(p.x, p.y);
+        if (p.z > -d + 0.3 || x0 < 0.5)
+            return -1.0;
+        return x0 <= d ? x0 : (x0 * x0 + d * d) / (2.0 * d);
+    });
+    EXPECT_LT(errors.worst, 0.5) << errors.where.x << ' ' << errors.where.y;
+}
+
+TEST(Accessibility, GlobalCountsOnlySpheresThatCanComeFromOutside) {
+    // A cavity of radius 14 with a neck of radius 5 to the top of a block.
+    const auto bottle = test::volumeOf(
+        [](const V3d& p) {
+            const double block = std::max({std::abs(p.x) - 22.0, std::abs(p.y) - 22.0, p.z - 24.0, -p.z - 22.0});
+            const double neck = std::max(std::hypot(p.x, p.y) - 5.0, -p.z);
+            return std::max(block, -std::min(p.length() - 14.0, neck));
+        },
+        42);
+    const auto inCavity = [](const V3d& p, double value) {
+        return std::abs(p.length() - 14.0) < 0.2 && p.z < 8.0 ? value : -1.0;
+    };
+    EXPECT_LT(compare(*bottle, 20.0, [&](const V3d& p) { return inCavity(p, 14.0); }).worst, 0.5);
+    EXPECT_LT(compare(
+                  *bottle, 20.0, [&](const V3d& p) { return inCavity(p, 5.0); }, true)
+                  .worst,
+              1.0);
+    // From outside nothing changes.
+    const auto below = [](const V3d& p) { return p.z < -21.8 && std::hypot(p.x, p.y) < 15.0 ? 20.0 : -1.0; };
+    EXPECT_LT(compare(*bottle, 20.0, below, true).worst, 1e-6);
+}
+
+TEST(Accessibility, IsTheSameWhateverTheNeighboursFound) {
+    // Guesses from the voxel before only save time: one leaf alone gives what all leaves together give.
+    const auto groove = test::volumeOf(test::groove(0.7), 24);
+    Progress progress;
+    const SurfaceVoxels surface = findSurfaceVoxels(*groove, 0);
+    const auto once = accessibleRadii(*groove, surface, 0, 9.0, false, progress);
+    const auto again = accessibleRadii(*groove, surface, 0, 9.0, false, progress);
+    EXPECT_EQ(once, again);
+}
+
+} // namespace
+} // namespace patina
