@@ -3,6 +3,9 @@
 
 #include "operators/surface_operation.h"
 
+#include <optional>
+#include <vector>
+
 namespace patina {
 
 /// Hardness of layer k (k from 1): the budget is spent as thickness times hardness. Empty: 1 everywhere.
@@ -13,7 +16,10 @@ using LayerHardness = std::vector<double>;
 /// `thicknessUm` (real µm, >= 0) times the map, clamped to 0…1, along the current surface's normal. With `hardness`
 /// (one value > 0 per layer) a soft layer goes faster than a hard one: in each voxel the budget is spent walking down
 /// the differences phi_{k-1} - phi_k. Layers that are gone everywhere are dropped.
+///
+/// \param metalHardness  goes on into the metal (`erode … and metal`), which costs thickness times this hardness:
+///                       phi_m = max(phi_m, c). `base` stays as it is, the reference of heights.
 OperationReport erode(Workpiece& work, double thicknessUm, const ThicknessMap* map, const LayerHardness& hardness,
-                      Progress& progress);
+                      Progress& progress, std::optional<double> metalHardness = {});
 
 } // namespace patina

@@ -6,6 +6,8 @@
 #include "volume/layer_volume.h"
 #include "volume/surface_binding.h"
 
+#include <optional>
+
 namespace patina {
 
 /// The nest and the model's surface it grew from.
@@ -20,6 +22,8 @@ struct OperationReport {
     std::size_t clampedAbove = 0; ///< … above 1
     std::size_t changedIds = 0;   ///< voxels whose material ID changed
     bool grewBand = false;
+    std::optional<double> heightUm; ///< polish area: the height that was found, where anything had to go
+    std::optional<double> fraction; ///< polish area: the fraction of plateau, or of the material, that was reached
 };
 
 } // namespace patina

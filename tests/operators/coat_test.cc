@@ -2,7 +2,9 @@
 
 #include "base/errors.h"
 
-#include "support/test_surfaces.h"
+#include "support/exact_volume.h"
+#include "support/volume_meter.h"
+#include "volume/band.h"
 #include "volume/layer_statistics.h"
 #include "volume/nest_grids.h"
 #include "volume/stack_probe.h"
@@ -126,7 +128,34 @@ TEST(Coat, GrowsTheBandWhereItIsTooThin) {
     const auto piece = test::makePiece(test::sphere(20.f, 5), test::voxelScale(), 4.0);
     auto work = piece->work();
     EXPECT_TRUE(coat(work, "soot", 6.0, nullptr, piece->progress).grewBand);
-    EXPECT_LT(rmsError(*piece, 1, [](const Imath::V3d&) { return 6.0; }), 0.05);
+    EXPECT_LT(rmsError(*piece, 1, [](const Imath::V3d&) { return 6.0; }), 0.005);
+}
+
+TEST(Coat, ABoxGrowsToSteinersVolume) {
+    // Edges in the lattice's directions; the parallel body of a box is V + S t + M t^2 + 4/3 pi t^3.
+    const double a = 40.0, b = 30.0, c = 20.0;
+    const auto steiner = [&](double t) {
+        return a * b * c + 2.0 * (a * b + b * c + c * a) * t + M_PI * (a + b + c) * t * t + 4.0 / 3.0 * M_PI * t * t * t;
+    };
+    const auto exact = [&](double t) {
+        return test::volumeOf(
+            [&](const Imath::V3d& p) {
+                return test::boxDistance(p + Imath::V3d(0.31, 0.17, 0.42), {a / 2, b / 2, c / 2}) - t;
+            },
+            36, 4.0 + t, 4.0);
+    };
+    for (const double t : {2.0, 5.0, 8.0}) {
+        // The meter on the exact field of the parallel body.
+        EXPECT_NEAR(test::volumeWithin(*exact(t).grids().base) / steiner(t), 1.0, 2e-4) << t;
+        // The distance carried outward from a band of four voxels, as a coat thicker than the band has it.
+        LayerVolume volume = exact(0.0);
+        ensureExteriorBand(volume, t + 4.0);
+        auto grown = volume.grids().base->deepCopy();
+        for (FloatLeaf* leaf : leavesOf(grown->tree()))
+            for (auto voxel = leaf->beginValueOn(); voxel; ++voxel)
+                voxel.setValue(*voxel - static_cast<float>(t));
+        EXPECT_NEAR(test::volumeWithin(*grown) / steiner(t), 1.0, 1e-3) << t;
+    }
 }
 
 TEST(Coat, CancellingLeavesTheVolumeAsItWas) {

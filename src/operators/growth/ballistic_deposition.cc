@@ -8,9 +8,11 @@ namespace patina {
 
 namespace {
 
+template <bool notesPlaces>
 struct BallisticRule {
     const std::vector<std::array<int, 4>>& neighbours;
     std::vector<std::int32_t>& height;
+    LevelOccupancy* occupancy;
     std::uint64_t particles = 0;
 
     void prefetch(std::uint32_t cell) const {
@@ -21,28 +23,34 @@ struct BallisticRule {
     void operator()(std::uint32_t cell, std::uint32_t, std::uint32_t) {
         const auto& n = neighbours[cell];
         height[cell] = std::max({height[cell] + 1, height[n[0]], height[n[1]], height[n[2]], height[n[3]]});
+        if (notesPlaces)
+            occupancy->add(cell, height[cell]);
         ++particles;
     }
 };
+
+template <bool notesPlaces>
+std::uint64_t deposit(const GrowthRun& run, const ArrivalClock& clock, std::vector<std::int32_t>& height) {
+    const auto neighbours = closedNeighbours(run.lattice);
+    BallisticRule<notesPlaces> rule{neighbours, height, run.occupancy};
+    followArrivals(clock, run.age, run.progress, rule);
+    return rule.particles;
+}
 
 } // namespace
 
 GrownHeights growBallisticDeposition(const GrowthRun& run) {
     const ArrivalClock clock(run.lattice, run.random("arrivals"), run.random("thinning"), ArrivalClock::Rate::perCell,
                              run.options.arrival);
-    const auto neighbours = closedNeighbours(run.lattice);
     std::vector<std::int32_t> height(run.lattice.size(), 0);
-    BallisticRule rule{neighbours, height};
-    followArrivals(clock, run.age, run.progress, rule);
-
     GrownHeights grown;
-    grown.particles = rule.particles;
+    grown.particles = run.occupancy ? deposit<true>(run, clock, height) : deposit<false>(run, clock, height);
     grown.height.assign(height.begin(), height.end());
     // Each particle fills its cell for one layer, and where it lands does not depend on the cell's area.
     double area = 0.0;
     for (const float a : run.lattice.areas)
         area += a;
-    grown.solid = run.lattice.size() ? double(rule.particles) * area / double(run.lattice.size()) : 0.0;
+    grown.solid = run.lattice.size() ? double(grown.particles) * area / double(run.lattice.size()) : 0.0;
     return grown;
 }
 

@@ -53,6 +53,17 @@ GrownHeights runModel(const GrowthRun& run) {
     return {};
 }
 
+GrowthStatistics measure(const GrowthLattice& lattice, const GrownHeights& grown) {
+    GrowthStatistics statistics = measureHeights(lattice, grown.height);
+    statistics.particles = grown.particles;
+    double area = 0.0;
+    for (const float a : lattice.areas)
+        area += a;
+    const double envelope = statistics.mean * area;
+    statistics.density = envelope > 0.0 ? (grown.solid < 0.0 ? 1.0 : grown.solid / envelope) : 0.0;
+    return statistics;
+}
+
 } // namespace
 
 std::vector<std::array<int, 4>> closedNeighbours(const GrowthLattice& lattice) {
@@ -82,7 +93,7 @@ GrowthScale expectedScale(const GrowthOptions& given) {
         options.pointSpacing = std::min(options.pointSpacing, 8.0); // the statistics do not depend on the spacing
     const bool periodic = options.model != GrowthModel::steadyThickening;
     const GrowthLattice plane = flatLattice(side, side, periodic);
-    const GrowthRun run{plane, options, age, 0x9e3779b97f4a7c15u, "reference plane", nullptr};
+    const GrowthRun run{plane, options, age, 0x9e3779b97f4a7c15u, "reference plane", nullptr, nullptr};
     const GrowthStatistics statistics = measureHeights(plane, runModel(run).height);
     return {statistics.mean, statistics.interfaceWidth};
 }
@@ -108,21 +119,15 @@ double growthMarginCells(const GrowthOptions& options) {
 std::vector<float> growHeights(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
                                std::string_view label, Progress* progress) {
     checkOptions(lattice, options);
-    return runModel({lattice, options, options.age(), seed, label, progress}).height;
+    return runModel({lattice, options, options.age(), seed, label, progress, nullptr}).height;
 }
 
 GrowthPattern grow(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
                    std::string_view label, Progress* progress) {
     checkOptions(lattice, options);
-    GrownHeights grown = runModel({lattice, options, options.age(), seed, label, progress});
+    GrownHeights grown = runModel({lattice, options, options.age(), seed, label, progress, nullptr});
     GrowthPattern pattern;
-    pattern.statistics = measureHeights(lattice, grown.height);
-    pattern.statistics.particles = grown.particles;
-    double area = 0.0;
-    for (const float a : lattice.areas)
-        area += a;
-    const double envelope = pattern.statistics.mean * area;
-    pattern.statistics.density = envelope > 0.0 ? (grown.solid < 0.0 ? 1.0 : grown.solid / envelope) : 0.0;
+    pattern.statistics = measure(lattice, grown);
 
     pattern.factor.resize(lattice.size(), 0.f);
     const double top = expectedScale(options).top();
@@ -131,6 +136,20 @@ GrowthPattern grow(const GrowthLattice& lattice, const GrowthOptions& options, s
                        [top](float h) { return static_cast<float>(std::clamp(h / top, 0.0, 1.0)); });
     pattern.height = std::move(grown.height);
     return pattern;
+}
+
+GrownParticles growParticles(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
+                             std::string_view label, Progress* progress) {
+    checkOptions(lattice, options);
+    check(options.model == GrowthModel::ballisticDeposition, "only ballistic layers are known particle by particle",
+          "use BD");
+    GrownParticles particles;
+    particles.occupancy = LevelOccupancy(lattice.size());
+    GrownHeights grown =
+        runModel({lattice, options, options.age(), seed, label, progress, &particles.occupancy});
+    particles.statistics = measure(lattice, grown);
+    particles.height = std::move(grown.height);
+    return particles;
 }
 
 } // namespace patina

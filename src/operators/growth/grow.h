@@ -5,6 +5,7 @@
 #include "operators/growth/growth_lattice.h"
 #include "operators/growth/growth_options.h"
 #include "operators/growth/growth_statistics.h"
+#include "operators/growth/level_occupancy.h"
 
 #include <cstdint>
 #include <string_view>
@@ -40,6 +41,17 @@ GrowthPattern grow(const GrowthLattice& lattice, const GrowthOptions& options, s
 /// The heights alone, without factors (and the reference plane they cost) and statistics.
 std::vector<float> growHeights(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
                                std::string_view label, Progress* progress = nullptr);
+
+/// A ballistic layer particle by particle.
+struct GrownParticles {
+    std::vector<float> height; ///< of the envelope, levels
+    LevelOccupancy occupancy;  ///< levels that particles fill
+    GrowthStatistics statistics;
+};
+
+/// The history of grow() for BD, with the place of every particle. \throws RunError for another model; as grow()
+GrownParticles growParticles(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
+                             std::string_view label, Progress* progress = nullptr);
 
 /// Mean and deviation by which factors are made, at the age of the step, or of the last step where options.ofFull.
 /// In closed form for RD, otherwise of the same model on a reference plane with a key of its own: never of the object.

@@ -6,6 +6,7 @@
 #include "operators/growth/arrival_clock.h"
 #include "operators/growth/growth_lattice.h"
 #include "operators/growth/growth_options.h"
+#include "operators/growth/level_occupancy.h"
 
 #include <array>
 #include <cstdint>
@@ -22,6 +23,7 @@ struct GrowthRun {
     std::uint64_t seed;
     std::string_view label;
     Progress* progress;
+    LevelOccupancy* occupancy = nullptr; ///< where given, BD notes the place of every particle
 
     /// A stream of random numbers of this history, for one of the model's purposes.
     KeyedRandom random(std::string_view purpose) const {

@@ -1,0 +1,203 @@
+#include "operators/growth/voxel_growth.h"
+
+#include "base/errors.h"
+#include "operators/growth/cell_lookup.h"
+#include "operators/growth/voxel_interface.h"
+#include "volume/band.h"
+#include "volume/material_ids.h"
+#include "volume/nest_grids.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace patina {
+
+namespace {
+
+constexpr float tie = 1e-3f; // of a voxel
+
+/// What stands on each cell: compact columns, or levels with pores.
+struct Columns {
+    std::vector<float> height;      ///< end of the (outermost) solid, voxels
+    std::vector<float> levelVoxels; ///< porous: thickness of a level, per cell
+    LevelOccupancy occupancy;
+    bool porous = false;
+
+    /// c of interfaceOfVoxels() for a voxel `phi` voxels above the surface.
+    float offset(int cell, float phi) const {
+        if (cell < 0)
+            return phi; // what takes no particles ends at height 0
+        const auto i = static_cast<std::size_t>(cell);
+        // A voxel's centre may lie on the border of two levels: it belongs to the lower one, whatever rounding says.
+        if (!porous) {
+            const float c = phi - height[i];
+            return c < tie ? std::min(c, 0.f) : c;
+        }
+        const float thickness = levelVoxels[i];
+        if (phi <= 0.f || !(thickness > 0.f))
+            return phi; // metal and older layers are one solid level
+        const float level = std::ceil((phi - tie) / thickness);
+        return occupancy.holds(i, static_cast<std::int64_t>(level))
+                   ? std::min(0.f, phi - level * thickness)
+                   : std::max(tie, phi - (level - 1.f) * thickness);
+    }
+};
+
+double factorAt(const VoxelGrowth& growth, std::size_t cell) {
+    return growth.factor.empty() ? 1.0 : std::clamp(double(growth.factor[cell]), 0.0, 1.0);
+}
+
+Columns compactColumns(const GrowthLattice& lattice, const VoxelGrowth& growth, double thicknessVoxels,
+                       VoxelGrowthReport& report, Progress& progress) {
+    const GrowthPattern now = grow(lattice, growth.options, growth.seed, growth.label, &progress);
+    report.statistics = now.statistics;
+    std::vector<float> before;
+    if (growth.since > 0.0) {
+        GrowthOptions earlier = growth.options;
+        earlier.step = growth.since;
+        before = grow(lattice, earlier, growth.seed, growth.label, &progress).factor;
+    }
+    Columns columns;
+    columns.height.resize(lattice.size());
+    for (std::size_t i = 0; i < lattice.size(); ++i) {
+        const double grown = before.empty() ? now.factor[i] : std::max(0.f, now.factor[i] - before[i]);
+        columns.height[i] = static_cast<float>(grown * thicknessVoxels * factorAt(growth, i));
+    }
+    return columns;
+}
+
+Columns porousColumns(const GrowthLattice& lattice, const VoxelGrowth& growth, const LevelScale& levels,
+                      VoxelGrowthReport& report, Progress& progress) {
+    Columns columns;
+    columns.porous = true;
+    GrowthOptions options = growth.options;
+    options.rate = GrowthRate::linear;
+    options.step = levels.age;
+    options.total = std::max(levels.age, 1e-9);
+    // What has grown since a step lies on what had grown before: a history of its own.
+    const std::string label = growth.since > 0.0 ? growth.label + "/since" : growth.label;
+    GrownParticles grown = growParticles(lattice, options, growth.seed, label, &progress);
+    report.statistics = grown.statistics;
+    columns.occupancy = std::move(grown.occupancy);
+    columns.height.resize(lattice.size());
+    columns.levelVoxels.resize(lattice.size());
+    for (std::size_t i = 0; i < lattice.size(); ++i) {
+        columns.levelVoxels[i] = static_cast<float>(levels.levelVoxels * factorAt(growth, i));
+        columns.height[i] = grown.height[i] * columns.levelVoxels[i];
+    }
+    return columns;
+}
+
+/// c of every voxel of the band, in voxels.
+openvdb::FloatGrid::Ptr offsetsOfVoxels(const Workpiece& work, const GrowthLattice& lattice, const Imath::V3d& origin,
+                                        const Columns& columns, float highest, const Progress& progress) {
+    const openvdb::FloatGrid& surface = work.volume.grids().surface();
+    const double voxelSize = work.volume.scale().voxelSize;
+    const CellLookup lookup(lattice);
+    auto offsets = makeGridLike(surface, surface.background());
+    const auto from = leavesOf(surface.tree());
+    const auto to = leavesOf(offsets->tree());
+    const SurfaceMesh& mesh = work.binding.surface();
+    // Voxel centres lie at whole multiples of the voxel size and so do the borders of columns: a quarter of a voxel
+    // keeps rounding from having a say.
+    const Imath::V3d nudge = origin + Imath::V3d(0.25 * voxelSize);
+    tbb::parallel_for(std::size_t(0), from.size(), [&](std::size_t n) {
+        if (progress.cancelled())
+            return;
+        std::size_t at = work.binding.leafStart(n);
+        for (auto voxel = from[n]->cbeginValueOn(); voxel; ++voxel, ++at) {
+            const auto phi = static_cast<float>(*voxel / voxelSize);
+            float& offset = to[n]->buffer().data()[voxel.pos()];
+            if (phi > highest + 3.f) {
+                offset = phi - highest;
+                continue;
+            }
+            // Below the surface, too: the end of the column that stands on a voxel belongs to its neighbourhood.
+            int cell = GrowthLattice::noCell;
+            const SurfacePoint& under = work.binding.at(at);
+            if (phi > -2.f && under.triangle >= 0)
+                cell = lookup.cellAt(positionAt(mesh, under) + nudge, normalAt(mesh, under));
+            offset = columns.offset(cell, phi);
+        }
+    });
+    progress.checkpoint();
+    return offsets;
+}
+
+} // namespace
+
+bool growsInVoxels(const VolumeScale& scale, double thicknessUm, GrowthModel model) {
+    return model != GrowthModel::steadyThickening && thicknessUm * scale.voxelsPerUm() >= thinnestVoxelGrowth;
+}
+
+LevelScale ballisticLevels(const VoxelGrowth& growth, double thicknessVoxels, double cellVoxels) {
+    const GrowthScale full = expectedScale(growth.options);
+    if (!(full.top() > 0.0))
+        return {};
+    const auto meanAt = [&](double step) {
+        GrowthOptions at = growth.options;
+        at.ofFull = false;
+        at.step = step;
+        return step > 0.0 ? expectedScale(at).mean : 0.0;
+    };
+    const double mean = (growth.options.ofFull ? meanAt(growth.options.step) : full.mean) - meanAt(growth.since);
+    const double solid = thicknessVoxels * mean / full.top();
+    if (!(solid > 0.0))
+        return {};
+    if (growth.cubes) {
+        const double level = std::max(1.0, cellVoxels);
+        return {solid / level, level};
+    }
+    const double age = growth.options.age() - growthAge(growth.options.rate, growth.since, growth.options.total);
+    const double level = std::max(1.0, solid / age);
+    return {solid / level, level};
+}
+
+VoxelGrowthReport coatByVoxelGrowth(Workpiece& work, const std::string& material, double thicknessUm,
+                                    const GrowthLattice& lattice, const VoxelGrowth& growth, Progress& progress) {
+    LayerVolume& volume = work.volume;
+    const VolumeScale& scale = volume.scale();
+    if (!growth.factor.empty() && growth.factor.size() != lattice.size())
+        throw RunError("growth", "a map that does not fit the lattice", "give one value per cell");
+    const double thicknessVoxels = thicknessUm * scale.voxelsPerUm();
+    const bool porous = growth.options.model == GrowthModel::ballisticDeposition;
+
+    VoxelGrowthReport report;
+    Columns columns;
+    double levelVoxels = 0.0;
+    if (porous) {
+        const LevelScale levels = ballisticLevels(growth, thicknessVoxels, lattice.cell / scale.voxelSize);
+        levelVoxels = levels.levelVoxels;
+        columns = porousColumns(lattice, growth, levels, report, progress);
+    } else {
+        const double top = expectedScale(growth.options).top();
+        levelVoxels = top > 0.0 ? thicknessVoxels / top : 0.0;
+        columns = compactColumns(lattice, growth, thicknessVoxels, report, progress);
+    }
+    report.levelUm = levelVoxels / scale.voxelsPerUm();
+    float highest = 0.f;
+    for (const float height : columns.height)
+        highest = std::max(highest, height);
+
+    const bool extends = volume.layerCount() > 0 && volume.layers().back() == material;
+    if (highest > 0.f) {
+        if (ensureExteriorBand(volume, stackHeightVoxels(volume) + highest + 3.0)) {
+            work.binding.rebind(volume);
+            report.operation.grewBand = true;
+        }
+        const auto offsets = offsetsOfVoxels(work, lattice, growth.origin, columns, highest, progress);
+        columns = Columns();
+        auto grown = interfaceOfVoxels(volume.grids().surface(), *offsets, scale.voxelSize, porous, progress);
+        if (!extends)
+            volume.pushLayer(material);
+        volume.grids().interfaces.back() = grown;
+    } else if (!extends) {
+        volume.pushLayer(material);
+    }
+    report.operation.changedIds = updateMaterialIds(volume);
+    return report;
+}
+
+} // namespace patina
