@@ -40,14 +40,22 @@ V3d xyzOfChromaticity(double x, double y) {
     return {x / y, 1.0, (1.0 - x - y) / y};
 }
 
-// Rec.709 primaries, scaled so that the white that the tables give maps to (1, 1, 1) exactly.
-Matrix3 rec709ToXyz() {
-    const V3d red = xyzOfChromaticity(0.64, 0.33);
-    const V3d green = xyzOfChromaticity(0.30, 0.60);
-    const V3d blue = xyzOfChromaticity(0.15, 0.06);
-    const Matrix3 primaries = {{{red.x, green.x, blue.x}, {red.y, green.y, blue.y}, {red.z, green.z, blue.z}}};
-    const V3d amounts = inverse(primaries) * whiteD65();
-    Matrix3 result = primaries;
+Matrix3 operator*(const Matrix3& a, const Matrix3& b) {
+    Matrix3 result{};
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) {
+            for (int i = 0; i < 3; ++i) {
+                result.m[row][column] += a.m[row][i] * b.m[i][column];
+            }
+        }
+    }
+    return result;
+}
+
+/// RGB to XYZ of three primaries, scaled so that (1, 1, 1) gives `white` exactly.
+Matrix3 fromPrimaries(const V3d& red, const V3d& green, const V3d& blue, const V3d& white) {
+    Matrix3 result = {{{red.x, green.x, blue.x}, {red.y, green.y, blue.y}, {red.z, green.z, blue.z}}};
+    const V3d amounts = inverse(result) * white;
     for (auto& row : result.m) {
         row[0] *= amounts.x;
         row[1] *= amounts.y;
@@ -56,14 +64,35 @@ Matrix3 rec709ToXyz() {
     return result;
 }
 
-const Matrix3& toXyz() {
-    static const Matrix3 matrix = rec709ToXyz();
-    return matrix;
+// The white is the one that the tables give, so grey stays grey.
+Matrix3 rec709ToXyz() {
+    return fromPrimaries(xyzOfChromaticity(0.64, 0.33), xyzOfChromaticity(0.30, 0.60), xyzOfChromaticity(0.15, 0.06),
+                         whiteD65());
 }
 
-const Matrix3& fromXyz() {
-    static const Matrix3 matrix = inverse(toXyz());
-    return matrix;
+// AP1 (SMPTE ST 2065-1's white, S-2014-004's primaries) gives XYZ under the ACES white; Bradford's matrix turns that
+// to D65 by scaling cone-like responses by the ratio of the whites.
+Matrix3 acescgToXyz() {
+    const V3d acesWhite = xyzOfChromaticity(0.32168, 0.33767);
+    const Matrix3 ap1 = fromPrimaries(xyzOfChromaticity(0.713, 0.293), xyzOfChromaticity(0.165, 0.830),
+                                      xyzOfChromaticity(0.128, 0.044), acesWhite);
+    const Matrix3 bradford = {{{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}}};
+    const V3d from = bradford * acesWhite;
+    const V3d to = bradford * whiteD65();
+    const Matrix3 scale = {{{to.x / from.x, 0, 0}, {0, to.y / from.y, 0}, {0, 0, to.z / from.z}}};
+    return inverse(bradford) * scale * bradford * ap1;
+}
+
+/// Both directions of one colour space.
+struct SpaceMatrices {
+    Matrix3 toXyz, fromXyz;
+    explicit SpaceMatrices(const Matrix3& matrix) : toXyz(matrix), fromXyz(inverse(matrix)) {}
+};
+
+const SpaceMatrices& matrices(ColourSpace space) {
+    static const SpaceMatrices rec709(rec709ToXyz());
+    static const SpaceMatrices acescg(acescgToXyz());
+    return space == ColourSpace::acescg ? acescg : rec709;
 }
 
 using FineWeights = std::array<V3d, fineCount>;
@@ -113,20 +142,9 @@ BandWeights computeBandWeights() {
     return weights;
 }
 
-const BandWeights& bandWeights() {
+const BandWeights& xyzBandWeights() {
     static const BandWeights weights = computeBandWeights();
     return weights;
-}
-
-std::array<Spectrum, 3> computeRec709BandWeights() {
-    std::array<Spectrum, 3> result;
-    for (int band = 0; band < bandCount; ++band) {
-        const V3d rgb = linearRec709FromXyz(bandWeights()[band]);
-        for (int channel = 0; channel < 3; ++channel) {
-            result[channel][band] = static_cast<float>(rgb[channel]);
-        }
-    }
-    return result;
 }
 
 double labCurve(double t) {
@@ -147,7 +165,7 @@ V3d xyzFromReflectance(const FineSpectrum& reflectance) {
 V3d xyzFromReflectance(const Spectrum& reflectance) {
     V3d xyz(0.0);
     for (int band = 0; band < bandCount; ++band) {
-        xyz += bandWeights()[band] * static_cast<double>(reflectance[band]);
+        xyz += xyzBandWeights()[band] * static_cast<double>(reflectance[band]);
     }
     return xyz;
 }
@@ -158,8 +176,19 @@ V3d whiteD65() {
     return xyzFromReflectance(one);
 }
 
+std::array<Spectrum, 3> bandWeights(ColourSpace space) {
+    std::array<Spectrum, 3> result;
+    for (int band = 0; band < bandCount; ++band) {
+        const V3d rgb = linearFromXyz(xyzBandWeights()[band], space);
+        for (int channel = 0; channel < 3; ++channel) {
+            result[channel][band] = static_cast<float>(rgb[channel]);
+        }
+    }
+    return result;
+}
+
 const std::array<Spectrum, 3>& rec709BandWeights() {
-    static const std::array<Spectrum, 3> weights = computeRec709BandWeights();
+    static const std::array<Spectrum, 3> weights = bandWeights(ColourSpace::rec709);
     return weights;
 }
 
@@ -170,26 +199,23 @@ V3d linearRec709(const Spectrum& reflectance) {
     return linearRec709FromXyz(xyzFromReflectance(reflectance));
 }
 
+V3d linearFromXyz(const V3d& xyz, ColourSpace space) {
+    return matrices(space).fromXyz * xyz;
+}
+V3d xyzFromLinear(const V3d& rgb, ColourSpace space) {
+    return matrices(space).toXyz * rgb;
+}
 V3d linearRec709FromXyz(const V3d& xyz) {
-    return fromXyz() * xyz;
+    return linearFromXyz(xyz, ColourSpace::rec709);
 }
 V3d xyzFromLinearRec709(const V3d& rgb) {
-    return toXyz() * rgb;
+    return xyzFromLinear(rgb, ColourSpace::rec709);
 }
-
 V3d acescgFromXyz(const V3d& xyz) {
-    // Bradford adaptation: cone-like responses are scaled by the ratio of the whites.
-    static const Matrix3 bradford = {{{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}}};
-    static const Matrix3 bradfordInverse = inverse(bradford);
-    static const V3d ratio = [] {
-        const V3d from = bradford * whiteD65();
-        const V3d to = bradford * xyzOfChromaticity(0.32168, 0.33767);
-        return V3d(to.x / from.x, to.y / from.y, to.z / from.z);
-    }();
-    static const Matrix3 acescg = {{{1.6410233797, -0.3248032942, -0.2364246952},
-                                    {-0.6636628587, 1.6153315917, 0.0167563477},
-                                    {0.0117218943, -0.0082844420, 0.9883948585}}};
-    return acescg * (bradfordInverse * (ratio * (bradford * xyz)));
+    return linearFromXyz(xyz, ColourSpace::acescg);
+}
+V3d xyzFromAcescg(const V3d& rgb) {
+    return xyzFromLinear(rgb, ColourSpace::acescg);
 }
 
 V3d labFromXyz(const V3d& xyz) {

@@ -11,6 +11,12 @@
 
 namespace patina {
 
+/// Spaces of linear light that results may be in.
+enum class ColourSpace {
+    rec709, ///< primaries and white (D65) of sRGB and Rec.709
+    acescg, ///< AP1 primaries, the ACES white; D65 is adapted to it by Bradford's matrix
+};
+
 /// Number of samples of the CIE tables: 360, 365 … 830 nm.
 constexpr int cieCount = 95;
 
@@ -33,6 +39,8 @@ Imath::V3d whiteD65();
 
 /// Weight of each band in each channel of linear Rec.709; each channel's weights sum to 1.
 const std::array<Spectrum, 3>& rec709BandWeights();
+/// The same for a colour space.
+std::array<Spectrum, 3> bandWeights(ColourSpace space);
 
 /// Not clipped: colours outside the gamut have components below 0 or above 1.
 Imath::V3d linearRec709(const FineSpectrum& reflectance);
@@ -40,8 +48,12 @@ Imath::V3d linearRec709(const Spectrum& reflectance);
 
 Imath::V3d linearRec709FromXyz(const Imath::V3d& xyz);
 Imath::V3d xyzFromLinearRec709(const Imath::V3d& rgb);
-/// ACEScg, adapted from D65 to the ACES white by Bradford's matrix.
+/// ACEScg, adapted from D65 to the ACES white by Bradford's matrix; white is (1, 1, 1).
 Imath::V3d acescgFromXyz(const Imath::V3d& xyz);
+/// Back to XYZ under D65.
+Imath::V3d xyzFromAcescg(const Imath::V3d& rgb);
+Imath::V3d linearFromXyz(const Imath::V3d& xyz, ColourSpace space);
+Imath::V3d xyzFromLinear(const Imath::V3d& rgb, ColourSpace space);
 
 /// CIELAB relative to D65.
 Imath::V3d labFromXyz(const Imath::V3d& xyz);

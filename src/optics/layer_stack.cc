@@ -13,6 +13,7 @@ namespace patina {
 
 namespace {
 
+using Imath::V3d;
 using Imath::V3f;
 
 /// Thicker than this is the same as opaque or, for what neither absorbs nor scatters, the same as nothing.
@@ -39,20 +40,8 @@ const StackKernel& kernel() {
     return chosen;
 }
 
-/// Pointers to the layers that are there, from bottom to top.
-struct PresentLayers {
-    int count = 0;
-    int index[StackOptics::maxLayers];
-    float thicknessUm[StackOptics::maxLayers];
-    float weight[StackOptics::maxLayers];
-};
-
 V3f clippedToGamut(const float* rgb) {
     return {std::max(rgb[0], 0.f), std::max(rgb[1], 0.f), std::max(rgb[2], 0.f)};
-}
-
-float luminance(const V3f& rgb) {
-    return 0.2126f * rgb.x + 0.7152f * rgb.y + 0.0722f * rgb.z;
 }
 
 V3f clamped01(const V3f& rgb) {
@@ -61,8 +50,21 @@ V3f clamped01(const V3f& rgb) {
 
 } // namespace
 
-StackOptics::StackOptics(const std::vector<const Material*>& materials, Model model)
-    : rgbWeights_(rec709BandWeights()), model_(model) {
+/// The layers that are there, from bottom to top.
+struct StackOptics::PresentLayers {
+    int count = 0;
+    int index[maxLayers];
+    float thicknessUm[maxLayers];
+    float weight[maxLayers];
+};
+
+StackOptics::StackOptics(const std::vector<const Material*>& materials, Model model, const StackFeatures& features)
+    : rgbWeights_(bandWeights(features.colourSpace)), features_(features), model_(model) {
+    for (int channel = 0; channel < 3; ++channel) {
+        V3d one(0.0);
+        one[channel] = 1.0;
+        luminance_[channel] = static_cast<float>(xyzFromLinear(one, features.colourSpace).y);
+    }
     if (materials.empty()) {
         throw RunError("optics", "a stack needs a base material");
     }
@@ -103,6 +105,11 @@ StackOptics::StackOptics(const std::vector<const Material*>& materials, Model mo
             }
             layer.refractiveIndex = 1.f;
         }
+        if (features.thinFilm && !layers_.empty() && !material->isMetal && material->hasIndex &&
+            materials[0]->hasIndex) {
+            layer.thinFilm = static_cast<int>(thinFilms_.size());
+            thinFilms_.emplace_back(*materials[0], *material);
+        }
         layers_.push_back(layer);
     }
     for (std::size_t i = 0; i < internalReflectance_.size(); ++i) {
@@ -119,9 +126,23 @@ float lookUpInternal(const std::array<float, 65>& table, float index) {
     return table[below] + (position - below) * (table[below + 1] - table[below]);
 }
 
-PresentLayers presentLayers(const float* thicknessUm, int layerCount) {
+} // namespace
+
+StackOptics StackOptics::in(ColourSpace space) const {
+    StackOptics result = *this;
+    result.features_.colourSpace = space;
+    result.rgbWeights_ = bandWeights(space);
+    for (int channel = 0; channel < 3; ++channel) {
+        V3d one(0.0);
+        one[channel] = 1.0;
+        result.luminance_[channel] = static_cast<float>(xyzFromLinear(one, space).y);
+    }
+    return result;
+}
+
+StackOptics::PresentLayers StackOptics::presentLayers(const float* thicknessUm) const {
     PresentLayers present;
-    for (int k = 0; k < layerCount; ++k) {
+    for (int k = 0; k < layerCount(); ++k) {
         const float d = thicknessUm[k];
         if (d > 0.f) { // false for NaN too
             present.index[present.count] = k + 1;
@@ -133,20 +154,69 @@ PresentLayers presentLayers(const float* thicknessUm, int layerCount) {
     return present;
 }
 
-} // namespace
+float StackOptics::interference(const PresentLayers& present, Spectrum& reflectance) const {
+    if (thinFilms_.empty() || present.count == 0 || layers_[present.index[0]].thinFilm < 0) {
+        return 0.f;
+    }
+    const float share = interferingShare(present.thicknessUm[0]);
+    if (share > 0.f) {
+        thinFilms_[layers_[present.index[0]].thinFilm].lookUp(present.thicknessUm[0], reflectance);
+    }
+    return share;
+}
 
 void StackOptics::evaluate(const float* thicknessUm, Appearance& out) const {
     out.model = model_;
     out.lobes.resize(layers_.size());
+    const PresentLayers present = presentLayers(thicknessUm);
+    Spectrum underFilm;
+    const float share = interference(present, underFilm);
+    if (share <= 0.f) {
+        evaluateOver(layers_[0].reflectance, present, out);
+        return;
+    }
+    PresentLayers rest = present; // the film is part of the metal's reflectance
+    --rest.count;
+    std::copy(present.index + 1, present.index + present.count, rest.index);
+    std::copy(present.thicknessUm + 1, present.thicknessUm + present.count, rest.thicknessUm);
+    std::copy(present.weight + 1, present.weight + present.count, rest.weight);
+    evaluateOver(underFilm, rest, out);
+    if (share >= 1.f) {
+        return;
+    }
+    // Between the two, a mean of both: it conserves energy as both do.
+    const std::size_t count = layers_.size();
+    const struct {
+        V3f diffuse, baseColour;
+        float metallic, flattenedRoughness, specular;
+    } interfering = {out.diffuse, out.baseColour, out.metallic, out.flattenedRoughness, out.specular};
+    Lobe lobes[maxLayers + 1];
+    std::copy(out.lobes.begin(), out.lobes.end(), lobes);
+    evaluateOver(layers_[0].reflectance, present, out);
+    const auto mix = [share](auto& to, const auto& from) { to += (from - to) * share; };
+    mix(out.diffuse, interfering.diffuse);
+    for (std::size_t i = 0; i < count; ++i) {
+        mix(out.lobes[i].colour, lobes[i].colour);
+        mix(out.lobes[i].edgeColour, lobes[i].edgeColour);
+        mix(out.lobes[i].air, lobes[i].air);
+        mix(out.lobes[i].airEdge, lobes[i].airEdge);
+    }
+    mix(out.baseColour, interfering.baseColour);
+    mix(out.metallic, interfering.metallic);
+    mix(out.flattenedRoughness, interfering.flattenedRoughness);
+    mix(out.specular, interfering.specular);
+}
+
+void StackOptics::evaluateOver(const Spectrum& base, const PresentLayers& present, Appearance& out) const {
     if (model_ == Model::paper) {
-        evaluatePaper(thicknessUm, out);
+        evaluatePaper(base, present, out);
     } else {
-        evaluateConserving(thicknessUm, out);
+        evaluateConserving(base, present, out);
     }
 }
 
 Spectrum StackOptics::bodyReflectance(const float* thicknessUm) const {
-    const PresentLayers present = presentLayers(thicknessUm, layerCount());
+    const PresentLayers present = presentLayers(thicknessUm);
     KernelInput input;
     input.count = present.count;
     input.base = &layers_[0].reflectance;
@@ -160,11 +230,10 @@ Spectrum StackOptics::bodyReflectance(const float* thicknessUm) const {
     return result;
 }
 
-void StackOptics::evaluateConserving(const float* thicknessUm, Appearance& out) const {
-    const PresentLayers present = presentLayers(thicknessUm, layerCount());
+void StackOptics::evaluateConserving(const Spectrum& base, const PresentLayers& present, Appearance& out) const {
     KernelInput input;
     input.count = present.count;
-    input.base = &layers_[0].reflectance;
+    input.base = &base;
     input.rgbWeights = rgbWeights_.data();
     float surfaceIndex = 1.f; // bare metal meets the air by its own n and k
     for (int k = 0; k < present.count; ++k) {
@@ -269,8 +338,7 @@ void StackOptics::flatten(float airReflectance, Appearance& out) const {
     out.specular = std::min(airReflectance / 0.08f, 1.f);
 }
 
-void StackOptics::evaluatePaper(const float* thicknessUm, Appearance& out) const {
-    const PresentLayers present = presentLayers(thicknessUm, layerCount());
+void StackOptics::evaluatePaper(const Spectrum& metal, const PresentLayers& present, Appearance& out) const {
     for (std::size_t i = 0; i < layers_.size(); ++i) {
         Lobe& lobe = out.lobes[i];
         lobe = Lobe{};
@@ -289,12 +357,14 @@ void StackOptics::evaluatePaper(const float* thicknessUm, Appearance& out) const
             above = onTop(above, StackLight<float>(kubelkaMunkLayer(std::max(absorption, 0.f), layer.scattering[band],
                                                                     present.thicknessUm[k])));
         }
-        lobes[0][band] = layers_[0].specular[band] * above.transmittance * above.transmittance;
-        const float base = layers_[0].reflectance[band];
+        lobes[0][band] = metal[band] * above.transmittance * above.transmittance;
+        const float base = metal[band];
         diffuse[band] = above.reflectanceAbove +
                         above.transmittance * above.transmittance * base / (1.f - above.reflectanceBelow * base);
     }
-    const auto rgbOf = [](const Spectrum& spectrum) { return clamped01(V3f(linearRec709(spectrum))); };
+    const auto rgbOf = [this](const Spectrum& spectrum) { 
+        return clamped01(V3f(linearFromXyz(xyzFromReflectance(spectrum), features_.colourSpace)));
+     };
     out.diffuse = rgbOf(diffuse);
     out.lobes[0].colour = out.lobes[0].edgeColour = rgbOf(lobes[0]);
     for (int k = 0; k < present.count; ++k) {

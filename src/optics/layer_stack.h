@@ -1,7 +1,9 @@
 #pragma once
 // The look of a stack of layers on a metal, from their thicknesses.
 
+#include "optics/colour.h"
 #include "optics/material.h"
+#include "optics/thin_film.h"
 
 #include <Imath/ImathVec.h>
 
@@ -16,9 +18,15 @@ enum class OpticsModel {
     paper,            ///< Dorsey & Hanrahan 1996 §4.3 to the letter; may return more than it receives
 };
 
+/// What a stack's light is computed with besides the model.
+struct StackFeatures {
+    bool thinFilm = false; ///< a film below 0.15 µm directly on the metal shows interference colours
+    ColourSpace colourSpace = ColourSpace::rec709;
+};
+
 /// Glossy reflection at one interface. Between normal and grazing incidence the colour goes by Schlick's (1 - c)^5.
 struct Lobe {
-    Imath::V3f colour{0.f};     ///< specular colour at normal incidence, attenuated by what lies above, linear Rec.709
+    Imath::V3f colour{0.f};     ///< specular colour at normal incidence, attenuated by what lies above
     Imath::V3f edgeColour{0.f}; ///< the same at grazing incidence, not yet dimmed by what the air interface keeps away
     float air = 0.f;        ///< the part of `colour` that the interface with the air reflects: it lies above all else
     float airEdge = 0.f;    ///< the same of `edgeColour`
@@ -26,7 +34,7 @@ struct Lobe {
     float roughness = 0.3f; ///< r of the paper
 };
 
-/// The reflection of one point, ready for a BSDF or for maps. Linear Rec.709.
+/// The reflection of one point, ready for a BSDF or for maps. Linear light of the stack's colour space.
 struct Appearance {
     OpticsModel model = OpticsModel::energyConserving;
     Imath::V3f diffuse{0.f}; ///< diffuse reflectance at normal incidence, 0…1
@@ -54,10 +62,14 @@ class StackOptics {
 
     /// \param materials  [0] the base metal, then layer 1…n from bottom to top; not null, copied.
     /// \throws RunError when there is no material, or more than maxLayers layers.
-    explicit StackOptics(const std::vector<const Material*>& materials, Model model = Model::energyConserving);
+    explicit StackOptics(const std::vector<const Material*>& materials, Model model = Model::energyConserving,
+                         const StackFeatures& features = {});
 
     int layerCount() const { return static_cast<int>(layers_.size()) - 1; }
     Model model() const { return model_; }
+    const StackFeatures& features() const { return features_; }
+    /// The same optics with its results in another colour space.
+    StackOptics in(ColourSpace space) const;
 
     /// \param thicknessUm  one per layer from bottom to top, real micrometres of solid; 0 or less means absent.
     ///                     May be null when there are no layers.
@@ -79,14 +91,24 @@ class StackOptics {
         float alpha = 0.f;
         float roughness = 0.f;
         bool isMetal = false;
+        int thinFilm = -1; ///< index into thinFilms_; -1: does not interfere
     };
+    struct PresentLayers;
 
-    void evaluateConserving(const float* thicknessUm, Appearance& out) const;
-    void evaluatePaper(const float* thicknessUm, Appearance& out) const;
+    PresentLayers presentLayers(const float* thicknessUm) const;
+    /// Share of the first present layer's look that is interference; `reflectance` is then the metal's under it.
+    float interference(const PresentLayers& present, Spectrum& reflectance) const;
+    void evaluateOver(const Spectrum& base, const PresentLayers& present, Appearance& out) const;
+    void evaluateConserving(const Spectrum& base, const PresentLayers& present, Appearance& out) const;
+    void evaluatePaper(const Spectrum& base, const PresentLayers& present, Appearance& out) const;
     void flatten(float airReflectance, Appearance& out) const;
+    float luminance(const Imath::V3f& rgb) const { return luminance_.dot(rgb); }
 
     std::vector<Layer> layers_; ///< [0] is the base
+    std::vector<ThinFilmTable> thinFilms_;
     std::array<Spectrum, 3> rgbWeights_;
+    Imath::V3f luminance_; ///< Y of each channel
+    StackFeatures features_;
     std::array<float, 65> internalReflectance_; ///< Saunderson's k2 for n = 1 … 3
     Model model_;
 };

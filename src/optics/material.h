@@ -25,6 +25,12 @@ struct Material {
     FineSpectrum fineScattering{};
     FineSpectrum fineReflectance{};
 
+    bool hasIndex = false; ///< the complex index of the solid is known: a thin film of it interferes (thin_film.h)
+    Spectrum indexN;       ///< n
+    Spectrum indexK;       ///< k; of films it follows from K
+    FineSpectrum fineN{};  ///< both every 5 nm
+    FineSpectrum fineK{};
+
     Imath::V3f specularColour{0.04f}; ///< of its interface with air at normal incidence, linear Rec.709, 0…1
     float roughness = 0.3f;           ///< r of the paper's (N·H)^(1/r), above 0, at most 1
     float refractiveIndex = 1.5f;     ///< of its interface, at least 1 (an effective one where the surface is porous)

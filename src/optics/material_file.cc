@@ -61,6 +61,10 @@ void readIndex(TomlReader& reader, const toml::table& table, MaterialDescription
     if (!n || !k) {
         return;
     }
+    if (result.material.isMetal) {
+        result.indexN = n->fine();
+        result.indexK = k->fine();
+    }
     FineSpectrum spectrum{};
     for (int i = 0; i < fineCount; ++i) {
         const double nm = fineWavelengthNm(i);
@@ -69,6 +73,18 @@ void readIndex(TomlReader& reader, const toml::table& table, MaterialDescription
                                               : 2.0 * 4.0 * pi * k->at(nm) / (nm * 1e-3);
     }
     (result.material.isMetal ? result.reflectance : result.absorption) = spectrum;
+}
+
+void readRefraction(TomlReader& reader, const toml::table& table, MaterialDescription& result) {
+    reader.allowOnly(table, {"file", "column", "wavelengths_nm", "values"});
+    if (result.material.isMetal) {
+        reader.error(table, "a metal has its refraction in [index]");
+        return;
+    }
+    const auto spectrum = reader.spectrum(table, reader.word(table, "column", "n"), {1.0, 10.0, "n"});
+    if (spectrum) {
+        result.indexN = spectrum->fine();
+    }
 }
 
 void readScattering(TomlReader& reader, const toml::table& table, MaterialDescription& result) {
@@ -178,7 +194,7 @@ MaterialDescription readMaterialFile(const std::filesystem::path& path, const st
     }
     reader.allowOnly(file, {"title", "kind", "estimate", "source", "refractive_index", "roughness", "hardness",
                             "solid_fraction", "density_kg_m3", "reflectance", "index", "absorption",
-                            "absorption_over_scattering", "scattering", "mixture"});
+                            "absorption_over_scattering", "scattering", "mixture", "refraction"});
     material.title = reader.word(file, "title", material.name);
     material.source = reader.word(file, "source");
     if (material.source.empty()) {
@@ -202,6 +218,9 @@ MaterialDescription readMaterialFile(const std::filesystem::path& path, const st
     }
     if (const toml::table* table = reader.subtable(file, "index")) {
         readIndex(reader, *table, result);
+    }
+    if (const toml::table* table = reader.subtable(file, "refraction")) {
+        readRefraction(reader, *table, result);
     }
     if (const toml::table* table = reader.subtable(file, "absorption")) {
         readAbsorption(reader, *table, result);

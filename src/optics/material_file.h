@@ -29,6 +29,8 @@ struct MaterialDescription {
     std::optional<FineSpectrum> ratio;       ///< K/S
     std::optional<FineSpectrum> absorption;  ///< K, 1/µm
     std::optional<FineSpectrum> scattering;  ///< S, 1/µm
+    std::optional<FineSpectrum> indexN;      ///< n of the solid: metals with [index], films with [refraction]
+    std::optional<FineSpectrum> indexK;      ///< k, metals only
     double hidesAtUm = 0.0;                  ///< > 0: S follows from the thickness that hides what is below
 
     std::vector<MixturePart> parts;

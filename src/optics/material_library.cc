@@ -20,6 +20,9 @@ namespace {
 using Imath::V3d;
 using Imath::V3f;
 
+constexpr double pi = 3.14159265358979323846;
+/// Parts of known index must make up this much of a mixture that interferes; the rest is taken to be like them.
+constexpr double leastKnownVolume = 0.8;
 /// Over black it must look this bright relative to over white to hide what is below (contrast ratio, ISO 6504).
 constexpr double hidingContrast = 0.98;
 
@@ -70,6 +73,18 @@ void resolveFilm(const MaterialDescription& description, Material& material) {
     }
 }
 
+/// n as given, k as the metal's file has it or from the film's K = 2 · 4 pi k / lambda.
+void setIndex(const MaterialDescription& description, Material& material) {
+    if (!description.indexN) {
+        return;
+    }
+    material.hasIndex = true;
+    material.fineN = *description.indexN;
+    if (description.indexK) {
+        material.fineK = *description.indexK;
+    }
+}
+
 /// Everything that follows from K and S, or from a metal's reflectance.
 void finish(Material& material) {
     FineSpectrum inAir{};
@@ -84,6 +99,13 @@ void finish(Material& material) {
             inAir[i] = saunderson(material.fineReflectance[i], k1, k2);
         }
         material.specularColour = V3f(static_cast<float>(k1));
+    }
+    if (material.hasIndex) {
+        for (int i = 0; i < fineCount && !material.isMetal; ++i) {
+            material.fineK[i] = material.fineAbsorption[i] * fineWavelengthNm(i) * 1e-3 / (8.0 * pi);
+        }
+        material.indexN = atBands(material.fineN);
+        material.indexK = atBands(material.fineK);
     }
     material.absorption = atBands(material.fineAbsorption);
     material.scattering = atBands(material.fineScattering);
@@ -115,6 +137,7 @@ class Resolver {
         } else if (!resolveMixture(description, material)) {
             return nullptr;
         }
+        setIndex(description, material);
         finish(material);
         return &done_.emplace(name, std::move(material)).first->second;
     }
@@ -130,6 +153,8 @@ class Resolver {
         }
         open_.insert(name);
         bool good = true;
+        double knownVolume = 0.0;
+        FineSpectrum sumN{};
         for (const MixturePart& part : description.parts) {
             const Material* resolved = nullptr;
             if (open_.count(part.material) > 0) {
@@ -147,12 +172,20 @@ class Resolver {
                 good = false;
                 continue;
             }
+            knownVolume += resolved->hasIndex ? part.volume : 0.0;
             for (int i = 0; i < fineCount; ++i) {
+                sumN[i] += resolved->hasIndex ? part.volume * resolved->fineN[i] : 0.0;
                 material.fineAbsorption[i] += part.volume * resolved->fineAbsorption[i];
                 material.fineScattering[i] += part.volume * resolved->fineScattering[i] * description.scatteringFactor;
             }
         }
         open_.erase(name);
+        if (knownVolume >= leastKnownVolume) {
+            material.hasIndex = true;
+            for (int i = 0; i < fineCount; ++i) {
+                material.fineN[i] = sumN[i] / knownVolume;
+            }
+        }
         if (!good) {
             failed_.insert(name);
         }
