@@ -10,11 +10,16 @@ namespace patina {
 struct Budget {
     double activeVoxels = 0.0;
     double allocatedVoxels = 0.0; ///< of all leaves, per grid
-    double volumeBytes = 0.0;     ///< of all grids when the script is done
+    double volumeBytes = 0.0;     ///< of all grids when they are most
     double mapBytes = 0.0;        ///< of all maps while they are baked
     double peakBytes = 0.0;       ///< of the process
     double diskBytes = 0.0;       ///< about, uncompressed
 };
+
+/// Level sets that a script's volume holds at the most: the base, what is left of the metal, and an interface for every
+/// layer. Materials laid on themselves are counted once; what polishing and eroding take away everywhere is not known
+/// before and counts on.
+int mostLevelSets(const Program& program);
 
 /// From the surface's area: a band of w voxels around A voxels² of surface holds A w active voxels, in leaves that
 /// reach 8 · E(|n_x| + |n_y| + |n_z|) = 12 voxels further.

@@ -203,6 +203,8 @@ class Checker {
         declaration.kind = Declaration::Kind::curve;
         declaration.offset = name.offset;
         declaration.broken = !good;
+        if (good)
+            program_.curves.push_back(*made);
         declaration.curve = std::move(made);
         scope_.declare(name.text, std::move(declaration));
     }

@@ -214,6 +214,10 @@ std::optional<Expression> ExpressionChecker::call(const SyntaxExpression& syntax
             fmt::format("leave a blank before the '(' where a map follows, or write {} * (…)", syntax.text));
         return std::nullopt;
     }
+    if (syntax.text == "exposure" || syntax.text == "wetness")
+        return FieldChecker(*this).exposure(syntax);
+    if (syntax.text == "accessibility")
+        return FieldChecker(*this).accessibility(syntax);
     const vocabulary::Signature* function = vocabulary::signature(syntax.text);
     if (!function) {
         if (scope_.brokenNames.count(syntax.text) > 0)
@@ -239,8 +243,7 @@ std::optional<Expression> ExpressionChecker::call(const SyntaxExpression& syntax
         return texture(syntax);
     if (syntax.text == "vertices")
         return vertices(syntax);
-    if (syntax.text == "noise" || syntax.text == "turbulence" || syntax.text == "accessibility" ||
-        syntax.text == "facing")
+    if (syntax.text == "noise" || syntax.text == "turbulence" || syntax.text == "facing")
         return geometric(syntax);
     return arithmetic(syntax);
 }
@@ -387,8 +390,7 @@ std::optional<Expression> ExpressionChecker::geometric(const SyntaxExpression& s
             whole = false;
         }
     } else {
-        const std::string what = syntax.text == "accessibility" ? "the radius" : "the size";
-        add(syntax.children[0], lengthPositive(syntax.children[0], what), true);
+        add(syntax.children[0], lengthPositive(syntax.children[0], "the size"), true);
         if (syntax.text == "turbulence")
             add(syntax.children[1], wholeNumber(syntax.children[1], "the number of octaves", 1, 16), false);
     }

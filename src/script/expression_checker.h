@@ -9,6 +9,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace patina {
 
@@ -41,6 +42,7 @@ class ExpressionChecker {
 
   private:
     friend class GrowthChecker;
+    friend class FieldChecker;
 
     std::optional<Expression> resolveNode(const SyntaxExpression& syntax);
     std::optional<Expression> name(const SyntaxExpression& syntax);
@@ -65,6 +67,24 @@ class ExpressionChecker {
     Scope& scope_;
     int nodes_ = 0; ///< of the whole expression that is being resolved, `let`s put in
     int depth_ = 0; ///< of resolveNode's recursion
+};
+
+/// The fields that take arguments.
+class FieldChecker {
+  public:
+    explicit FieldChecker(ExpressionChecker& expressions) : expressions_(expressions) {}
+
+    std::optional<Expression> exposure(const SyntaxExpression& syntax);
+    std::optional<Expression> accessibility(const SyntaxExpression& syntax);
+
+  private:
+    bool argument(const std::string& name, const SyntaxExpression& value, ExposureRequest& out);
+    bool sky(const SyntaxExpression& syntax, ExposureRequest& out);
+    std::optional<bool> yesOrNo(const SyntaxExpression& syntax, const std::string& name);
+    std::optional<std::vector<double>> numbers(const SyntaxExpression& syntax, std::size_t count,
+                                               const std::string& what, const std::string& example);
+
+    ExpressionChecker& expressions_;
 };
 
 /// texture(BD.linear_1.20) and texture(BD(rate=linear, step=1, total=20, …)).

@@ -2,8 +2,17 @@
 
 #include "base/hash.h"
 #include "operators/coat.h"
+#include "operators/convert.h"
 #include "operators/erode.h"
+#include "operators/fill.h"
+#include "operators/grow_layer.h"
+#include "operators/material_ratio.h"
+#include "operators/offset.h"
+#include "operators/offset_tangent_sphere.h"
+#include "operators/polish.h"
+#include "operators/maps/shifted_map.h"
 #include "script/map_builder.h"
+#include "volume/region_voxelize.h"
 #include "volume/vdb_file.h"
 #include "volume/voxelize.h"
 
@@ -66,12 +75,15 @@ class Run {
 
     void perform(const NewMetal& action, StatementReport&) {
         const auto start = Clock::now();
-        const ClosedSurface closed = closeSurface(surface_, sheetBackVoxels * options_.scale.voxelSize);
+        const ClosedSurface closed = closeSurface(workSurface(), sheetBackVoxels * options_.scale.voxelSize);
         VoxelizeOptions voxelizeOptions;
         voxelizeOptions.scale = options_.scale;
         voxelizeOptions.metal = action.metal;
-        voxelizeOptions.exteriorBand = std::max(4.0, std::ceil(thickestStackVoxels(program_, options_.scale)) + 3.0);
-        volume_ = std::make_unique<LayerVolume>(voxelize(closed, voxelizeOptions, progress_));
+        voxelizeOptions.exteriorBand = bandOutsideVoxels(program_, options_.scale);
+        voxelizeOptions.interiorBand = std::max(4.0, std::ceil(deepestPitVoxels(program_, options_.scale)) + 3.0);
+        volume_ = std::make_unique<LayerVolume>(
+            options_.region ? voxelizeRegion(closed, options_.region->region(), voxelizeOptions, progress_)
+                            : voxelize(closed, voxelizeOptions, progress_));
         bind(closed);
         binding_->refineBase(*volume_);
         result_.voxelizeSeconds += secondsSince(start);
@@ -89,8 +101,20 @@ class Run {
     }
 
     void perform(const Coat& action, StatementReport& report) {
-        const ThicknessMapPtr map = mapOf(action.map);
         Workpiece work{*volume_, *binding_};
+        if (action.map) {
+            const auto grown =
+                maps_->buildVoxelGrowth(*action.map, action.thicknessUm, volume_->scale(), progress_);
+            if (grown) {
+                maps_->takeStatistics(); // of the maps that steer it
+                const VoxelGrowthReport what = coatByVoxelGrowth(work, action.material, action.thicknessUm,
+                                                                 grown->lattice, grown->growth, progress_);
+                report.operation = what.operation;
+                report.growths = {what.statistics};
+                return;
+            }
+        }
+        const ThicknessMapPtr map = mapOf(action.map);
         report.operation = coat(work, action.material, action.thicknessUm, map.get(), progress_);
         report.growths = maps_->takeStatistics();
     }
@@ -102,37 +126,101 @@ class Run {
             for (const std::string& layer : volume_->layers())
                 hardness.push_back(materials_.at(layer).hardness);
         Workpiece work{*volume_, *binding_};
-        report.operation = erode(work, action.thicknessUm, map.get(), hardness, progress_);
+        std::optional<double> metalHardness;
+        if (action.andMetal)
+            metalHardness = action.byHardness ? materials_.at(volume_->metal()).hardness : 1.0;
+        report.operation = erode(work, action.thicknessUm, map.get(), hardness, progress_, metalHardness);
         report.growths = maps_->takeStatistics();
     }
+
+    void perform(const Grow& action, StatementReport& report) {
+        const ThicknessMapPtr map = mapOf(action.map);
+        Workpiece work{*volume_, *binding_};
+        report.operation = growLayer(work, action.material, action.thicknessUm, map.get(), progress_);
+        report.growths = maps_->takeStatistics();
+    }
+
+    void perform(const Convert& action, StatementReport& report) {
+        const ThicknessMapPtr map = mapOf(action.map);
+        Workpiece work{*volume_, *binding_};
+        report.operation = convertLayers(work, action.from, action.to, action.fraction, map.get(), progress_);
+        report.growths = maps_->takeStatistics();
+    }
+
+    void perform(const Fill& action, StatementReport& report) {
+        const ThicknessMapPtr map = mapOf(action.map);
+        Workpiece work{*volume_, *binding_};
+        std::optional<double> smoothRadius;
+        if (action.aboveSmoothRadiusUm)
+            smoothRadius = sceneUnits(*action.aboveSmoothRadiusUm);
+        report.operation = fill(work, action.material, action.heightUm, map.get(), progress_, smoothRadius);
+        report.growths = maps_->takeStatistics();
+    }
+
+    void perform(const Polish& action, StatementReport& report) {
+        const ThicknessMapPtr map = mapOf(action.map);
+        Workpiece work{*volume_, *binding_};
+        if (action.area) {
+            AreaPolish what;
+            what.fraction = *action.area;
+            what.map = map.get();
+            if (action.windowUm)
+                what.window = sceneUnits(*action.windowUm);
+            what.ofMaterial = action.ofMaterial;
+            report.operation = polishArea(work, what, progress_);
+        } else {
+            report.operation = polish(work, action.heightUm.value(), map.get(), progress_);
+        }
+        report.growths = maps_->takeStatistics();
+    }
+
+    void perform(const Offset& action, StatementReport& report) {
+        Workpiece work{*volume_, *binding_};
+        const double radius = sceneUnits(action.radiusUm);
+        report.operation = action.tangentSphereThicknessUm
+                               ? offsetTangentSphere(work, action.material, radius, *action.tangentSphereThicknessUm,
+                                                     action.global, progress_)
+                               : offset(work, action.material, radius, action.global, progress_);
+    }
+
+    // A length of the model, which the exaggeration does not scale.
+    double sceneUnits(double realUm) const { return realUm * 1e-6 / volume_->scale().metresPerUnit; }
 
     // `render maps` says that maps are wanted; they are baked from the finished volume.
     void perform(const Render&, StatementReport&) {}
 
-    // What declareAbilities() does not list, the checker has refused before anything ran.
-    template <typename Action>
-    void perform(const Action&, StatementReport& report) {
-        throw RunError(report.text, "this statement is not available in this version");
+    ThicknessMapPtr mapOf(const std::optional<Expression>& expression) {
+        if (!expression)
+            return nullptr;
+        // Maps know the model's coordinates, operators those of the volume.
+        ThicknessMapPtr map = maps_->build(*expression, progress_);
+        if (!options_.region)
+            return map;
+        const Region& region = options_.region->region();
+        return makeShiftedMap(std::move(map), 1.0 / region.magnification, region.origin());
     }
 
-    ThicknessMapPtr mapOf(const std::optional<Expression>& expression) {
-        return expression ? maps_->build(*expression, progress_) : nullptr;
-    }
+    // What voxels are bound to: of a region the piece around it, of which `surface_` is the part in the box.
+    const SurfaceMesh& workSurface() const { return options_.region ? options_.region->work() : surface_; }
 
     void adopt(LayerVolume volume) {
         volume_ = std::make_unique<LayerVolume>(std::move(volume));
-        bind(closeSurface(surface_, sheetBackVoxels * volume_->scale().voxelSize));
+        bind(closeSurface(workSurface(), sheetBackVoxels * volume_->scale().voxelSize));
     }
 
     void bind(const ClosedSurface& closed) {
-        binding_ = std::make_unique<SurfaceBinding>(*volume_, surface_, closed);
+        binding_ = std::make_unique<SurfaceBinding>(*volume_, workSurface(), closed);
         MapContext context;
+        context.volume = volume_.get();
         context.binding = binding_.get();
-        context.unitsPerRealUm = 1e-6 / volume_->scale().metresPerUnit;
-        context.voxelSize = volume_->scale().voxelSize;
+        const double magnification = options_.region ? options_.region->region().magnification : 1.0;
+        context.unitsPerRealUm = 1e-6 / volume_->scale().metresPerUnit / magnification;
+        context.voxelSize = volume_->scale().voxelSize / magnification;
         context.longestSide = options_.longestSide;
         context.up = options_.up;
         context.seed = options_.seed;
+        context.region = options_.region;
+        context.context = options_.context;
         maps_ = std::make_unique<MapBuilder>(context);
     }
 
@@ -160,20 +248,49 @@ class Run {
 } // namespace
 
 double thickestStackVoxels(const Program& program, const VolumeScale& scale) {
+    // The highest the stack can stand after each statement; polishing and eroding are not counted on.
+    const double perUm = scale.voxelsPerUm(), perRealUm = perUm / scale.exaggeration;
+    // What a ball of radius r cannot reach is nearer than r to the metal. Large balls mostly leave less, and the
+    // operators make the band grow where they do not.
+    constexpr double mostForBalls = 8.0;
+    const auto ball = [&](double radiusUm) { return std::min(mostForBalls, radiusUm * perRealUm); };
+    double highest = 0.0;
+    for (const Statement& statement : program.statements) {
+        if (const auto* coat = std::get_if<Coat>(&statement.action)) {
+            highest += coat->thicknessUm * perUm;
+        } else if (const auto* grow = std::get_if<Grow>(&statement.action)) {
+            highest += grow->thicknessUm * perUm;
+        } else if (const auto* fill = std::get_if<Fill>(&statement.action)) {
+            highest = std::max(highest, fill->heightUm * perUm + ball(fill->aboveSmoothRadiusUm.value_or(0.0)));
+        } else if (const auto* offset = std::get_if<Offset>(&statement.action)) {
+            highest += offset->tangentSphereThicknessUm ? *offset->tangentSphereThicknessUm * perUm
+                                                        : ball(offset->radiusUm);
+        }
+    }
+    return highest;
+}
+
+double bandOutsideVoxels(const Program& program, const VolumeScale& scale) {
+    // The stack is read as the largest difference of phi, in which a steep map's slopes count for a percent or two.
+    return std::max(4.0, std::ceil(1.02 * thickestStackVoxels(program, scale)) + 3.0);
+}
+
+double deepestPitVoxels(const Program& program, const VolumeScale& scale) {
     double totalUm = 0.0;
     for (const Statement& statement : program.statements)
-        if (const auto* coat = std::get_if<Coat>(&statement.action))
-            totalUm += coat->thicknessUm;
+        if (const auto* erode = std::get_if<Erode>(&statement.action); erode && erode->andMetal)
+            totalUm += erode->thicknessUm;
     return totalUm * scale.voxelsPerUm();
 }
 
 void declareAbilities(CheckContext& context, const MaterialLibrary& materials) {
     for (const std::string& name : materials.names())
         context.materials.push_back({name, materials.at(name).isMetal});
-    context.operators = {"new", "open", "coat", "erode", "render"};
-    context.functions = {"texture", "vertices", "noise", "turbulence", "slope", "elevation", "facing",
-                         "min",     "max",      "clamp", "mix",        "pow",   "smoothstep"};
-    context.clauses = {"by"};
+    context.operators = {"new", "open", "coat", "erode", "grow", "convert", "fill", "polish", "offset", "render"};
+    context.functions = {"texture",  "vertices",      "noise",  "turbulence", "slope", "elevation", "facing",
+                         "min",      "max",           "clamp",  "mix",        "pow",   "smoothstep",
+                         "exposure", "accessibility", "wetness"};
+    context.clauses = {"by", "and", "above", "window", "of", "tangent-sphere", "global"};
 }
 
 RunResult runProgram(const Program& program, const SurfaceMesh& surface, const MaterialLibrary& materials,

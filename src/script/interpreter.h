@@ -10,6 +10,8 @@
 #include "surface/mesh.h"
 #include "volume/layer_statistics.h"
 #include "volume/layer_volume.h"
+#include "volume/region_context.h"
+#include "volume/region_model.h"
 
 #include <functional>
 #include <memory>
@@ -24,6 +26,8 @@ struct RunOptions {
     std::uint64_t seed = 0;
     std::string programVersion;
     std::string modelName;
+    const RegionModel* region = nullptr;    ///< of a close-up; the surface given to runProgram() is then its shown()
+    const ContextFields* context = nullptr; ///< of a close-up: the whole model's fields
 };
 
 /// What one statement did.
@@ -46,6 +50,12 @@ struct RunResult {
 
 /// Thickest the script can make the stack, in voxels of the volume: what the band must hold.
 double thickestStackVoxels(const Program& program, const VolumeScale& scale);
+
+/// Voxels outside the base that hold it: the stack (and what slopes read too much), and three to spare.
+double bandOutsideVoxels(const Program& program, const VolumeScale& scale);
+
+/// Deepest the script can erode the metal itself, in voxels, by hardnesses of 1 and more.
+double deepestPitVoxels(const Program& program, const VolumeScale& scale);
 
 /// What this build can do, for CheckContext: operators, functions, growth models.
 void declareAbilities(CheckContext& context, const MaterialLibrary& materials);

@@ -3,8 +3,10 @@
 #include "operators/growth/grow.h"
 #include "operators/growth/growth_map.h"
 #include "operators/maps/combined_map.h"
+#include "operators/maps/context_map.h"
 #include "operators/maps/geometry_map.h"
 #include "operators/maps/noise_map.h"
+#include "operators/maps/shifted_map.h"
 #include "operators/maps/texture_map.h"
 #include "operators/maps/vertex_map.h"
 
@@ -13,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace patina {
 
@@ -87,14 +90,57 @@ ThicknessMapPtr MapBuilder::build(const Expression& e, Progress& progress) {
     case Expression::Kind::string:
         break;
     }
-    return buildField(e);
+    return buildField(e, progress);
 }
 
-ThicknessMapPtr MapBuilder::buildField(const Expression& e) const {
+FieldStore& MapBuilder::fieldStore() {
+    if (!fields_) {
+        FieldStore::Scene scene;
+        scene.volume = context_.volume;
+        scene.binding = context_.binding;
+        scene.up = context_.up;
+        const SurfaceMesh& whole = context_.region ? context_.region->whole() : context_.binding->surface();
+        scene.lowest = std::numeric_limits<double>::max();
+        scene.highest = std::numeric_limits<double>::lowest();
+        const Imath::V3d up = context_.up.normalized();
+        for (const Imath::V3f& p : whole.positions) {
+            const Imath::V3d position(p);
+            const double height = (context_.region ? context_.region->region().toLocal(position) : position).dot(up);
+            scene.lowest = std::min(scene.lowest, height);
+            scene.highest = std::max(scene.highest, height);
+        }
+        if (context_.region)
+            scene.whole = &context_.region->wholeScene();
+        fields_ = std::make_unique<FieldStore>(scene);
+    }
+    return *fields_;
+}
+
+ThicknessMapPtr MapBuilder::ofField(const std::string& name,
+                                    const std::function<ThicknessMapPtr(FieldStore&)>& compute) {
+    if (context_.context)
+        if (ThicknessMapPtr map = makeContextMap(*context_.context, name))
+            return map;
+    ThicknessMapPtr map = compute(fieldStore());
+    if (!context_.region)
+        return map;
+    // Fields know the volume's coordinates, and are asked in the model's.
+    const Region& region = context_.region->region();
+    return makeShiftedMap(std::move(map), region.magnification, region.origin() * -region.magnification);
+}
+
+ThicknessMapPtr MapBuilder::buildField(const Expression& e, Progress& progress) {
+    if (e.text == "exposure" || e.text == "wetness") {
+        const ExposureRequest request = e.exposure ? *e.exposure : ExposureRequest();
+        return ofField(request.fieldName(e.text), [&](FieldStore& fields) {
+            return e.text == "exposure" ? fields.exposure(request, progress) : fields.wetness(request, progress);
+        });
+    }
     if (e.text == "slope")
         return makeSlopeMap(context_.up);
     if (e.text == "elevation") {
-        const Imath::Box3f bounds = context_.binding->surface().bounds();
+        const Imath::Box3f bounds =
+            context_.region ? context_.region->whole().bounds() : context_.binding->surface().bounds();
         return makeElevationMap(context_.up, Imath::Box3d(Imath::V3d(bounds.min), Imath::V3d(bounds.max)));
     }
     throw RunError(e.place.text(), fmt::format("the map '{}' is not available here", e.text));
@@ -106,10 +152,19 @@ ThicknessMapPtr MapBuilder::buildCall(const Expression& e, Progress& progress) {
         const std::string channel = e.children.size() < 2                            ? ""
                                     : e.children[1].kind == Expression::Kind::number ? fmt::format("{}", int(number(1)))
                                                                                      : e.children[1].text;
-        return makeTextureMap(context_.binding->surface(), e.children[0].text, channel);
+        return makeTextureMap(mapSurface(), e.children[0].text, channel);
     }
     if (e.text == "vertices")
-        return makeVertexMap(context_.binding->surface(), e.children[0].text);
+        return makeVertexMap(mapSurface(), e.children[0].text);
+    if (e.text == "accessibility") {
+        AccessibilityRequest request;
+        request.radiusUm = number(0);
+        request.radius = number(0) * context_.unitsPerRealUm *
+                         (context_.region ? context_.region->region().magnification : 1.0);
+        request.global = e.children.size() > 1;
+        return ofField(request.fieldName(),
+                       [&](FieldStore& fields) { return fields.accessibility(request, progress); });
+    }
     if (e.text == "noise")
         return std::make_shared<NoiseMap>(number(0) * context_.unitsPerRealUm, context_.seed, "noise");
     if (e.text == "turbulence")
@@ -126,18 +181,37 @@ ThicknessMapPtr MapBuilder::buildCall(const Expression& e, Progress& progress) {
     throw RunError(e.place.text(), fmt::format("the map '{}' is not available here", e.text));
 }
 
-const GrowthLattice& MapBuilder::lattice(double cell) {
-    auto& kept = lattices_[cell];
-    if (!kept)
+const SurfaceMesh& MapBuilder::mapSurface() const {
+    return cellSurface_ ? *cellSurface_ : context_.binding->surface();
+}
+
+const GrowthLattice& MapBuilder::lattice(double cell, double marginCells) {
+    auto& kept = lattices_[{cell, context_.region ? marginCells : 0.0}];
+    if (kept)
+        return *kept;
+    if (!context_.region) {
         kept = std::make_unique<GrowthLattice>(surfaceLattice(context_.binding->surface(), cell));
+        return *kept;
+    }
+    // A few cells more for those who read the pattern at the region's outermost voxels.
+    const double margin = (marginCells + 4.0) * cell + 2.0 * context_.voxelSize;
+    SurfaceMesh surface = context_.region->growthSurface(margin, 1.5 * std::max(cell, context_.voxelSize));
+    kept = std::make_unique<GrowthLattice>(surfaceLattice(surface, cell));
+    RayScene scene(surface.positions, surface.triangles);
+    pieces_[kept.get()] = std::make_unique<GrowthPiece>(GrowthPiece{std::move(surface), std::move(scene)});
     return *kept;
 }
 
 std::vector<float> MapBuilder::perCell(const GrowthLattice& lattice, const ThicknessMap& map) const {
     std::vector<float> values(lattice.size());
-    const SurfaceMesh& surface = context_.binding->surface();
+    const auto piece = pieces_.find(&lattice);
+    const SurfaceMesh& surface = piece != pieces_.end() ? piece->second->surface : context_.binding->surface();
     tbb::parallel_for(std::size_t(0), values.size(), [&](std::size_t i) {
-        const SurfacePoint under = context_.binding->closest(Imath::V3d(lattice.centres[i]));
+        SurfacePoint under;
+        if (piece == pieces_.end())
+            under = context_.binding->closest(Imath::V3d(lattice.centres[i]));
+        else if (const auto found = piece->second->scene.closest(lattice.centres[i]))
+            under = found->point;
         if (under.triangle < 0)
             return;
         const MapPoint point{positionAt(surface, under), normalAt(surface, under), under.triangle, under.u, under.v};
@@ -151,20 +225,25 @@ std::vector<float> MapBuilder::arrivalFrom(const GrowthLattice& lattice, const I
     std::vector<float> values(lattice.size());
     const Imath::V3f towards(direction);
     const float clearance = static_cast<float>(0.5 * lattice.cell);
+    const auto isOccluded = [&](const Imath::V3f& start) {
+        if (!context_.region)
+            return context_.binding->occluded(start, towards);
+        const Imath::V3f local(context_.region->region().toLocal(Imath::V3d(start)));
+        return context_.region->wholeScene().occluded(local, towards, 0.f, std::numeric_limits<float>::infinity());
+    };
     tbb::parallel_for(std::size_t(0), values.size(), [&](std::size_t i) {
         const float cosine = lattice.normals[i].dot(towards);
-        if (cosine > 0.f && !context_.binding->occluded(lattice.centres[i] + lattice.normals[i] * clearance, towards))
+        if (cosine > 0.f && !isOccluded(lattice.centres[i] + lattice.normals[i] * clearance))
             values[i] = cosine;
     });
     return values;
 }
 
-ThicknessMapPtr MapBuilder::buildGrowth(const GrowthCall& call, Progress& progress) {
-    const double cell =
-        call.cellUm ? *call.cellUm * context_.unitsPerRealUm : context_.longestSide / cellsPerLongestSide;
-    const GrowthLattice& cells = lattice(cell);
-    progress.checkpoint();
+double MapBuilder::cellOf(const GrowthCall& call, double byDefault) const {
+    return call.cellUm ? *call.cellUm * context_.unitsPerRealUm : byDefault;
+}
 
+MapBuilder::GrowthSetup MapBuilder::setUpGrowth(const GrowthCall& call, double cell, Progress& progress) {
     GrowthOptions options;
     options.model = *growthModelNamed(call.model);
     options.rate = *growthRateNamed(call.rate);
@@ -178,7 +257,13 @@ ThicknessMapPtr MapBuilder::buildGrowth(const GrowthCall& call, Progress& progre
     if (call.seeding)
         options.seeding = *call.seeding;
     if (call.points)
-        options.pointSpacing = pointSpacingFor(*call.points, context_.binding->surface().area(), cell);
+        options.pointSpacing = pointSpacingFor(
+            *call.points, context_.region ? context_.region->whole().area() : context_.binding->surface().area(), cell);
+    const GrowthLattice& cells = lattice(cell, growthMarginCells(options));
+    progress.checkpoint();
+    const SurfaceMesh* const outer = cellSurface_; // arrival and blocked may grow patterns of their own
+    if (const auto piece = pieces_.find(&cells); piece != pieces_.end())
+        cellSurface_ = &piece->second->surface;
     if (call.arrival)
         options.arrival = perCell(cells, *build(*call.arrival, progress));
     if (call.from) {
@@ -195,6 +280,13 @@ ThicknessMapPtr MapBuilder::buildGrowth(const GrowthCall& call, Progress& progre
         else
             options.blocked = perCell(cells, *build(*call.blocked, progress));
     }
+    cellSurface_ = outer;
+    return {cells, std::move(options)};
+}
+
+ThicknessMapPtr MapBuilder::buildGrowth(const GrowthCall& call, Progress& progress) {
+    const auto [cells, options] =
+        setUpGrowth(call, cellOf(call, context_.longestSide / cellsPerLongestSide), progress);
     GrowthPattern pattern = grow(cells, options, context_.seed, call.label, &progress);
     statistics_.push_back(pattern.statistics);
     if (call.since > 0) {
@@ -206,6 +298,49 @@ ThicknessMapPtr MapBuilder::buildGrowth(const GrowthCall& call, Progress& progre
                        [](float now, float then) { return std::max(0.f, now - then); });
     }
     return std::make_shared<GrowthMap>(cells, pattern.factor, context_.voxelSize);
+}
+
+std::optional<MapBuilder::CoatGrowth> MapBuilder::buildVoxelGrowth(const Expression& expression, double thicknessUm,
+                                                                   const VolumeScale& scale, Progress& progress) {
+    // Down the left side of a product: its first factor that is a growth, and the others.
+    const GrowthCall* call = nullptr;
+    std::vector<const Expression*> open{&expression}, others;
+    while (!open.empty()) {
+        const Expression* e = open.back();
+        open.pop_back();
+        if (e->kind == Expression::Kind::binary && e->text == "*") {
+            open.push_back(&e->children[1]);
+            open.push_back(&e->children[0]);
+        } else if (e->kind == Expression::Kind::growth && !call) {
+            call = e->growth.get();
+        } else {
+            others.push_back(e);
+        }
+    }
+    if (!call || !growsInVoxels(scale, thicknessUm, *growthModelNamed(call->model)))
+        return {};
+    auto [cells, options] = setUpGrowth(*call, cellOf(*call, context_.voxelSize), progress);
+    VoxelGrowth growth;
+    growth.options = std::move(options);
+    growth.since = call->since;
+    growth.seed = context_.seed;
+    growth.label = call->label;
+    growth.cubes = !call->cellUm;
+    if (context_.region)
+        growth.origin = context_.region->region().origin();
+    const SurfaceMesh* const outer = cellSurface_;
+    if (const auto piece = pieces_.find(&cells); piece != pieces_.end())
+        cellSurface_ = &piece->second->surface;
+    for (const Expression* other : others) {
+        const std::vector<float> values = perCell(cells, *build(*other, progress));
+        if (growth.factor.empty())
+            growth.factor = values;
+        else
+            std::transform(values.begin(), values.end(), growth.factor.begin(), growth.factor.begin(),
+                           [](float a, float b) { return a * b; });
+    }
+    cellSurface_ = outer;
+    return CoatGrowth{cells, std::move(growth)};
 }
 
 } // namespace patina

@@ -16,6 +16,7 @@
 
 namespace patina {
 
+struct ExposureRequest;
 struct GrowthCall;
 
 /// `curve NAME = (0, 0) (5, 1.2) (30, 2);`: straight lines between points sorted by their first number, held constant
@@ -52,6 +53,7 @@ struct Expression {
     std::vector<Expression> children;
     std::shared_ptr<const GrowthCall> growth;
     std::shared_ptr<const Curve> curve;
+    std::shared_ptr<const ExposureRequest> exposure; ///< of `exposure` and `wetness` with arguments
 };
 
 /// A growth model at one moment of its history: `BD.linear_1.20`, or BD(rate=linear, step=1, total=20, …).
@@ -177,6 +179,7 @@ struct Program {
     std::string sourceText;
     std::vector<Statement> statements; ///< the first is NewMetal or OpenFile
     std::vector<Parameter> parameters;
+    std::vector<Curve> curves; ///< in the order of their declarations
     std::optional<std::uint64_t> seed; ///< of `seed N;`
     std::vector<Diagnostic> warnings;
 };

@@ -239,24 +239,30 @@ std::vector<double> layerThicknessesUm(const WeatherPlan& plan, const WeatherKin
     };
     std::vector<double> thickness(plan.oxides.size() + plan.minerals.size(), 0.0);
     oxidesAt(years, &thickness);
-    // What grows in each twentieth of a year goes to the minerals by their parts at that time: the latest to begin
-    // takes its share first, those before it the rest.
+    if (plan.minerals.empty())
+        return thickness;
+    const auto begun = [](const WeatherMineral& mineral, double at) {
+        const auto& [from, to] = mineral.begins;
+        const double x = std::clamp((at - from) / std::max(to - from, 1e-9), 0.0, 1.0);
+        return x * x * (3.0 - 2.0 * x);
+    };
+    // Of what the kinetics leave to minerals, as much is there as the first of them has begun. What grows in each
+    // twentieth of a year goes to the later ones by their parts at that time, and the rest to the first.
     constexpr double step = 0.05;
     double before = 0.0;
     const int steps = static_cast<int>(std::ceil(years / step - 1e-9));
     for (int i = 1; i <= steps; ++i) {
-        const double now = std::min(years, i * step), middle = now - 0.5 * step;
-        const double mineral = std::max(before, patinaThicknessUm(plan, kinetics, now) - oxidesAt(now, nullptr));
+        const double now = std::min(years, i * step);
+        const double allowed = patinaThicknessUm(plan, kinetics, now) - oxidesAt(now, nullptr);
+        const double mineral = std::max(before, begun(plan.minerals[0], now) * allowed);
         double left = mineral - before;
-        for (std::size_t m = plan.minerals.size(); m-- > 0;) {
-            const auto& [from, to] = plan.minerals[m].begins;
-            const double x = std::clamp((middle - from) / std::max(to - from, 1e-9), 0.0, 1.0);
-            const double part = left * plan.minerals[m].share * x * x * (3.0 - 2.0 * x);
+        for (std::size_t m = plan.minerals.size(); m-- > 1;) {
+            const double part = left * plan.minerals[m].share * begun(plan.minerals[m], now);
             thickness[plan.oxides.size() + m] += part;
             left -= part;
         }
-        // Before the first mineral has begun everywhere some of the growth has nowhere to go yet; it is made up later.
-        before = mineral - left;
+        thickness[plan.oxides.size()] += left;
+        before = mineral;
     }
     return thickness;
 }

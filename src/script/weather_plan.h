@@ -27,8 +27,9 @@ struct WeatherOxide {
     WeatherPattern pattern;
 };
 
-/// Minerals share what the kinetics leave after the oxides. From `begins.first` to `begins.second` years a mineral's
-/// part of the growth rises from nothing to `share`.
+/// Minerals share what the kinetics leave after the oxides. The first one is there on the first places after
+/// `begins.first` years and on the last after `begins.second`; a later one's part of the growth rises from nothing to
+/// `share` in that time.
 struct WeatherMineral {
     std::string material;
     std::pair<double, double> begins{0.0, 1.0};

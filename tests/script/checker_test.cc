@@ -169,7 +169,7 @@ TEST(Checker, knowsFunctionsFieldsAndTheirArguments) {
     EXPECT_EQ(firstError("coat soot 1 min(1)"),
               "2:13: 'min' has 1 argument, which is too few (it is written min(a, b))");
     EXPECT_EQ(firstError("coat soot 1 noise(size=1mm)"), "2:19: 'noise' takes no named arguments");
-    EXPECT_THAT(firstError("coat soot 1 exposure(2)"), HasSubstr("2:13: 'exposure' has no arguments"));
+    EXPECT_THAT(firstError("coat soot 1 slope(2)"), HasSubstr("2:13: 'slope' has no arguments"));
     EXPECT_THAT(firstError("coat soot 1 \"a.png\""), HasSubstr("2:13: a quoted text can only be a texture's file"));
     EXPECT_THAT(firstError("coat soot 1 (1, 2)"), HasSubstr("2:13: a list has no place here"));
     EXPECT_THAT(firstError("coat soot 1 texture(noise(1mm))"),

@@ -70,7 +70,7 @@ TEST_F(OperatorsRunTest, PolishAreaAndFillAboveSmoothAndOffsetRun) {
                                  "polish area 0.3 slope window 8um\n"
                                  "polish area 0.1 of soot\n",
                                  ball_);
-    EXPECT_EQ(result.finished, 8u);
+    EXPECT_EQ(result.finished, 7u);
     EXPECT_NEAR(result.statements[2].operation.fraction.value_or(0.0), 0.4, 1e-3);
 }
 
