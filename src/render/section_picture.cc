@@ -83,6 +83,12 @@ SectionPicture drawSection(const LayerVolume& volume, const std::vector<SectionM
     const double unitsPerPixel = width / cutWidth;
     const auto feet = sampler.trace(options.at, options.along, unitsPerPixel, cutWidth);
 
+    const SectionSampler::Foot middle = *feet[std::size_t(cutWidth / 2)];
+    Imath::V3d tangent = options.along - middle.normal * middle.normal.dot(options.along);
+    if (tangent.length() < 1e-6 * options.along.length())
+        tangent = middle.normal.cross(Imath::V3d(middle.normal.y, middle.normal.z, middle.normal.x));
+    tangent.normalize();
+
     SectionPicture picture;
     picture.meanThicknessUm.assign(std::size_t(volume.layerCount()), 0.0);
     double highest = 0.0; // scene units as drawn
@@ -110,6 +116,10 @@ SectionPicture drawSection(const LayerVolume& volume, const std::vector<SectionM
     picture.image = Image(options.pictureWidth, head + cutHeight + foot);
     fill(picture.image, 0, 0, picture.image.width, picture.image.height, paper);
     const int left = margin, top = head;
+    if (!options.unrolled) {
+        stretch = 1.0;
+        picture.stretch = scale.exaggeration;
+    }
     const double unitsPerRow = unitsPerPixel / stretch;
     const double floorRow = 0.75 * cutHeight;
     tbb::parallel_for(0, cutWidth, [&](int x) {
@@ -118,7 +128,13 @@ SectionPicture drawSection(const LayerVolume& volume, const std::vector<SectionM
             int above = 0, below = 0;
             for (int sy = 0; sy < supersamples; ++sy) {
                 Imath::V3f sample = paper;
-                if (feet[x]) {
+                if (!options.unrolled) {
+                    const double height = (floorRow - (y + (sy + 0.5) / supersamples)) * unitsPerRow;
+                    const double along = (x + 0.5 - 0.5 * cutWidth) * unitsPerPixel;
+                    const int region = sampler.regionAt(middle.position + middle.normal * height + tangent * along);
+                    sample = region == SectionSampler::air ? sky : materials[std::size_t(region)].colour;
+                    (sy == 0 ? above : below) = region;
+                } else if (feet[x]) {
                     const double height = (floorRow - (y + (sy + 0.5) / supersamples)) * unitsPerRow;
                     // Below the line is metal, however thin the part is.
                     const int region =

@@ -36,8 +36,9 @@ std::optional<StackStatistics> statisticsOf(const LayerVolume& volume, const Arg
             return std::nullopt;
         file = beside.string();
     }
-    const Model model = loadModel(file, options, &volume.scale(), console);
-    if (surfaceHash(model.surface) != volume.provenance.modelHash) {
+    const Model model = loadModel(file, options, &volume.scale(), console, RegionRequest::of(volume, arguments.file));
+    const bool isPiece = model.region && !model.whole;
+    if (!isPiece && surfaceHash(model.surface) != volume.provenance.modelHash) {
         if (!arguments.model.empty())
             throw ModelError(file, fmt::format("is not the model that '{}' was made from", arguments.file),
                              "give the same model, with the same --subdivide, --scheme and --atlas");
@@ -52,6 +53,8 @@ void tell(const Arguments& arguments, const Options& options, Console& console) 
     const VolumeScale& scale = volume.scale();
     const auto& from = volume.provenance;
     const double voxelUm = scale.voxelSize * scale.metresPerUnit * 1e6;
+    const auto region = RegionRequest::of(volume, arguments.file).existing;
+    const double magnification = region ? region->magnification : 1.0;
     if (arguments.json) {
         nlohmann::ordered_json json;
         json["file"] = arguments.file;
@@ -61,9 +64,11 @@ void tell(const Arguments& arguments, const Options& options, Console& console) 
         json["script"] = from.script;
         json["seed"] = from.seed;
         json["program"] = from.program;
-        json["voxel_size_units"] = scale.voxelSize;
-        json["metres_per_unit"] = scale.metresPerUnit;
+        json["voxel_size_units"] = scale.voxelSize / magnification;
+        json["metres_per_unit"] = scale.metresPerUnit * magnification;
         json["exaggeration"] = scale.exaggeration;
+        if (!from.region.empty())
+            json["region"] = from.region;
         json["palette"] = volume.palette();
         json["layers"] = volume.layers();
         if (stack)
@@ -87,7 +92,15 @@ void tell(const Arguments& arguments, const Options& options, Console& console) 
     std::string text = fmt::format("{}\n  model '{}', script '{}', seed {}, vdb-patina {}\n", arguments.file,
                                    from.model, from.scriptName, from.seed, from.program);
     text += fmt::format("  voxels of {} ({:.6g} scene units of {:g} m), thickness drawn {:g} times life size\n",
-                        readableLength(voxelUm), scale.voxelSize, scale.metresPerUnit, scale.exaggeration);
+                        readableLength(voxelUm), scale.voxelSize / magnification, scale.metresPerUnit * magnification,
+                        scale.exaggeration);
+    if (region) {
+        const Imath::V3d &low = region->box.min, &high = region->box.max;
+        text += fmt::format("  a region: {:.9g},{:.9g},{:.9g} to {:.9g},{:.9g},{:.9g}; {:.0f} voxels around it besides\n",
+                            low.x, low.y, low.z, high.x, high.y, high.z, region->marginVoxels());
+    }
+    if (magnification != 1.0)
+        text += fmt::format("  the .vdb's own coordinates are the model's times {:g}\n", magnification);
     text += fmt::format("  {:.3g} million voxels in the band, {} in memory\n", double(volume.activeVoxels()) * 1e-6,
                         readableBytes(double(volume.memoryBytes())));
     text += "  materials:";

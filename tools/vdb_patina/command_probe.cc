@@ -84,11 +84,11 @@ void probeVolume(const Arguments& arguments, const Options& options, Console& co
     }
     for (const Imath::V3d& wanted : points) {
         console.checkpoint();
-        const auto closest = scene.closest(Imath::V3f(wanted));
-        const Imath::V3d position = positionAt(input.model.surface, closest->point);
+        const auto closest = scene.closest(Imath::V3f(input.model.toLocal(wanted)));
+        const Imath::V3d local = positionAt(input.model.surface, closest->point), position = input.model.toModel(local);
         std::vector<double> thickness(std::max<std::size_t>(1, layers.size()));
         std::vector<float> thicknessUm(thickness.size());
-        const auto reading = probe.read(position, normalAt(input.model.surface, closest->point), thickness.data());
+        const auto reading = probe.read(local, normalAt(input.model.surface, closest->point), thickness.data());
         if (!reading.found)
             console.warning(fmt::format("({:g}, {:g}, {:g}): no metal was found along the normal here", wanted.x,
                                         wanted.y, wanted.z));
@@ -106,7 +106,7 @@ void probeVolume(const Arguments& arguments, const Options& options, Console& co
             continue;
         }
         std::string text = fmt::format("at ({:.6g}, {:.6g}, {:.6g}), {:.3g} scene units from the point asked for\n",
-                                       position.x, position.y, position.z, closest->distance);
+                                       position.x, position.y, position.z, closest->distance / input.model.magnification());
         for (std::size_t k = layers.size(); k-- > 0;)
             text += fmt::format("  {:<24} {:10.4f} µm\n", layers[k], thickness[k]);
         text += fmt::format("  {:<24} {:>10}\n", input.volume.metal(), "bulk");

@@ -101,6 +101,7 @@ void addRunCommand(CLI::App& app, Options& options, Action& action) {
         ->group("Results");
     addModelOptions(*command, options);
     addVolumeOptions(*command, options);
+    addRegionOptions(*command, options);
     addMapOptions(*command, options);
     addPictureOptions(*command, options);
     addRunOptions(*command, options);
@@ -120,6 +121,7 @@ void addCheckCommand(CLI::App& app, Options& options, Action& action) {
     addGeneralOptions(*command, options);
     addModelOptions(*command, options);
     addVolumeOptions(*command, options);
+    addRegionOptions(*command, options);
     addMapOptions(*command, options);
     addRunOptions(*command, options);
     command->callback([&options, &action, arguments] {

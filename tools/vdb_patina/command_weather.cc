@@ -5,14 +5,10 @@
 #include "console.h"
 #include "data_folder.h"
 #include "outputs.h"
-#include "report.h"
-#include "script_run.h"
+#include "weather_series.h"
 
-#include "base/atomic_file.h"
 #include "base/errors.h"
-#include "render/contact_sheet.h"
 #include "render/film.h"
-#include "script/weather_script.h"
 
 #include <fmt/format.h>
 
@@ -72,68 +68,19 @@ std::vector<double> yearsOf(const Arguments& arguments) {
     return years;
 }
 
-// Whether an earlier run has made this frame, from the same script.
-bool isDone(const fs::path& folder, const std::string& name, const std::string& script) {
-    const fs::path scriptFile = folder / (name + ".patina");
-    return fs::exists(folder / "report.json") && fs::exists(folder / (name + ".vdb")) && fs::exists(scriptFile) &&
-           readTextFile(scriptFile.string()) == script;
-}
-
-void runFrame(const WeatherFrame& frame, const fs::path& folder, const Arguments& arguments, const Options& given,
-              bool withMaps, const MaterialLibrary& materials, Console& console) {
-    Options options = given;
-    options.output = folder.string();
-    options.report.clear();
-    options.bakeMaps = withMaps;
-    fs::create_directories(folder);
-    const fs::path scriptFile = folder / (arguments.environment + ".patina");
-    writeTextFile(scriptFile, frame.script);
-    const Task task = prepareTask(scriptFile.string(), arguments.model, materials, options, console);
-    checkBudget(task, options, console);
-    reportFile(options, folder);
-    RunResult result = runProgram(task.program, task.model.surface, materials, runOptionsOf(task, options), console);
-    if (result.interrupted)
-        throw Interrupted();
-    warnAboutClamping(result, console);
-    writeResults(task, result, nlohmann::ordered_json::array(), materials, options, folder, console);
-}
-
-void runSeries(const Arguments& arguments, const WeatherPlan& plan, const WeatherKinetics& kinetics,
-               const std::vector<double>& years, const Options& options, const fs::path& folder, Console& console) {
-    const std::vector<WeatherFrame> frames = weatherScripts(plan, kinetics, years, arguments.environment);
+void runHistory(const Arguments& arguments, const WeatherPlan& plan, const WeatherKinetics& kinetics,
+                const std::vector<double>& years, const Options& options, const fs::path& folder, Console& console) {
+    WeatherSeries series;
+    series.model = arguments.model;
+    series.environment = arguments.environment;
+    series.maps = arguments.maps;
+    series.frames = weatherScripts(plan, kinetics, years, arguments.environment);
     if (options.dryRun) {
-        for (const WeatherFrame& frame : frames)
+        for (const WeatherFrame& frame : series.frames)
             console.result(frame.script);
         return;
     }
-    const MaterialLibrary materials = MaterialLibrary::load(findDataFolder());
-    std::vector<LabelledImage> pictures;
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-        const WeatherFrame& frame = frames[i];
-        const fs::path here = folder / frame.folder;
-        const bool withMaps = arguments.maps == "all" || (arguments.maps == "last" && i + 1 == frames.size());
-        console.notice(fmt::format("year {:g}: frame {} of {}", frame.year, i + 1, frames.size()));
-        if (options.resume && isDone(here, arguments.environment, frame.script)) {
-            console.notice("done by an earlier run");
-        } else {
-            try {
-                runFrame(frame, here, arguments, options, withMaps, materials, console);
-            } catch (const Interrupted&) {
-                throw Error(ExitCode::interrupted, "weather",
-                            fmt::format("interrupted in year {:g}; {} of {} frames are finished and saved", frame.year,
-                                        i, frames.size()),
-                            "the same command with --resume goes on from there");
-            }
-        }
-        if (options.pictureSize > 0) {
-            const fs::path picture = here / "preview.png";
-            // Numbered for programs that read image sequences.
-            fs::copy_file(picture, folder / fmt::format("{}_{:04}.png", arguments.environment, i + 1),
-                          fs::copy_options::overwrite_existing);
-            pictures.push_back(
-                {readPng(picture), fmt::format("{:g} year{}", frame.year, frame.year == 1.0 ? "" : "s")});
-        }
-    }
+    const std::vector<LabelledImage> pictures = runWeatherSeries(series, options, folder, console);
     if (pictures.empty())
         return;
     ContactSheetOptions sheetOptions;
@@ -158,7 +105,7 @@ void weather(const Arguments& arguments, const Options& options, Console& consol
     const fs::path folder =
         options.dryRun ? fs::path() : outputFolder(options, fs::path(arguments.model).stem().string() + "_weather");
     if (!arguments.extremes) {
-        runSeries(arguments, plan, kinetics, years, options, folder, console);
+        runHistory(arguments, plan, kinetics, years, options, folder, console);
         return;
     }
     for (const bool most : {false, true}) {
@@ -166,7 +113,7 @@ void weather(const Arguments& arguments, const Options& options, Console& consol
         const fs::path here = folder / (most ? "most" : "least");
         if (!options.dryRun)
             fs::create_directories(here);
-        runSeries(arguments, plan, kinetics, years, options, here, console);
+        runHistory(arguments, plan, kinetics, years, options, here, console);
     }
 }
 

@@ -21,6 +21,7 @@ void addInfoCommand(CLI::App& app, Options& options, Action& action);
 void addMakeCommand(CLI::App& app, Options& options, Action& action);
 void addMaterialsCommand(CLI::App& app, Options& options, Action& action);
 void addWeatherCommand(CLI::App& app, Options& options, Action& action);
+void addFigureCommand(CLI::App& app, Options& options, Action& action);
 void addSliceCommand(CLI::App& app, Options& options, Action& action);
 void addContactSheetCommand(CLI::App& app, Options& options, Action& action);
 

@@ -14,12 +14,22 @@ ExistingVolume loadExisting(const std::string& volumeFile, const std::string& mo
                             Console& console) {
     LayerVolume volume = readVolume(volumeFile);
     const std::string modelFile = modelName.empty() ? modelBeside(volumeFile) : modelName;
-    Model model = loadModel(modelFile, options, &volume.scale(), console);
-    if (!volume.provenance.modelHash.empty() && surfaceHash(model.surface) != volume.provenance.modelHash)
+    Model model =
+        loadModel(modelFile, options, &volume.scale(), console, RegionRequest::of(volume, volumeFile));
+    // How holes were dealt with is not asked for again where it can be found out.
+    for (const char* repair : {"sheet", "holes"})
+        if (options.repair.empty() && !model.region && !volume.provenance.modelHash.empty() &&
+            surfaceHash(model.surface) != volume.provenance.modelHash) {
+            Options other = options;
+            other.repair = repair;
+            model = loadModel(modelFile, other, &volume.scale(), console);
+        }
+    const bool isPiece = model.region && !model.whole;
+    if (!isPiece && !volume.provenance.modelHash.empty() && surfaceHash(model.surface) != volume.provenance.modelHash)
         throw ModelError(
             modelFile,
             fmt::format("is not the model that '{}' was made from ('{}')", volumeFile, volume.provenance.model),
-            "give the same model, with the same --subdivide, --scheme and --atlas");
+            "give the same model, with the same --subdivide, --scheme, --repair and --atlas");
     return {std::move(volume), std::move(model), MaterialLibrary::load(findDataFolder())};
 }
 

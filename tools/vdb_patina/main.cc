@@ -95,6 +95,7 @@ int main(int argc, char** argv) {
     addRenderCommand(app, options, action);
     addProbeCommand(app, options, action);
     addWeatherCommand(app, options, action);
+    addFigureCommand(app, options, action);
     addSliceCommand(app, options, action);
     addInfoCommand(app, options, action);
     addCheckCommand(app, options, action);

@@ -6,6 +6,7 @@
 #include "surface/atlas.h"
 #include "surface/limit_surface.h"
 #include "surface/mesh_file.h"
+#include "surface/mesh_repair.h"
 #include "surface/shapes.h"
 
 #include <fmt/format.h>
@@ -64,6 +65,62 @@ void fitUvs(Mesh& mesh, const std::string& name, Console& console) {
         console.warning(fmt::format("UVs reach {:.2g} beyond the unit square and were moved to its border", furthest));
 }
 
+// The model becomes its piece in the box.
+void cutRegion(Model& model, const Imath::Box3d& box, const Options& options, const VolumeScale* scale,
+               const RegionRequest& request, Console& console) {
+    model.scale = scale ? *scale : regionScale(box, options);
+    if (request.existing && RegionModel::hashOf(model.mesh) == request.existing->pieceHash) {
+        model.region = request.existing;
+        model.surface = RegionModel::shownFrom(model.mesh, *model.region);
+        model.longestSide = longest(model.surface.bounds());
+        return;
+    }
+    const double reach = request.reachVoxels ? request.reachVoxels(model.scale) : 4.0;
+    const Region region = request.existing ? *request.existing : makeRegion(box, modelVoxelSize(box, options), reach);
+    RegionModel::Options cut;
+    cut.limit.scheme = schemeNamed(options.scheme);
+    cut.limit.level = options.subdivide;
+    cut.up = upVector(options.up);
+    cut.resolution = options.resolution;
+    if (options.atlas)
+        makeFaceAtlas(model.mesh, options.resolution);
+    model.whole = std::make_shared<RegionModel>(std::move(model.mesh), region, cut);
+    model.region = model.whole->region();
+    model.mesh = model.whole->control();
+    model.surface = model.whole->shown();
+    model.longestSide = model.whole->longestSide();
+    if (!options.context.empty())
+        model.context = std::make_shared<ContextFields>(options.context, region.surfaceBox(), options.metresPerUnit());
+    if (!model.whole->whole().note.empty())
+        console.warning(model.whole->whole().note);
+    const double um = model.scale.metresPerUnit * region.magnification * 1e6;
+    const Imath::V3d size = box.size();
+    console.notice(fmt::format("{}: region of {} × {} × {} out of {}, {} triangles; voxels of {}, {:.0f} more around it",
+                               model.name, readableLength(size.x * um), readableLength(size.y * um),
+                               readableLength(size.z * um), readableLength(model.longestSide * um),
+                               model.surface.triangles.size(), readableLength(region.voxelSize * um),
+                               region.marginVoxels()));
+}
+
+// What is new of the findings.
+void tellFindings(const MeshReport& findings, std::size_t firstWarning, std::size_t firstNotice, Console& console) {
+    for (std::size_t i = firstWarning; i < findings.warnings.size(); ++i)
+        console.warning(findings.warnings[i]);
+    for (std::size_t i = firstNotice; i < findings.notices.size(); ++i)
+        console.notice(findings.notices[i]);
+}
+
+std::string describeShells(const Model& model) {
+    std::size_t sheets = 0;
+    for (const MeshReport::Shell& shell : model.findings.shells)
+        sheets += shell.kind == MeshReport::ShellKind::sheet;
+    if (model.surface.closed)
+        return "closed";
+    return sheets == model.findings.shells.size() ? "open, gets a back"
+                                                  : fmt::format("{} of {} shells open, get a back", sheets,
+                                                                model.findings.shells.size());
+}
+
 } // namespace
 
 Imath::V3d upVector(UpAxis up) {
@@ -87,7 +144,8 @@ Mesh makeUprightShape(const std::string& name) {
     return mesh;
 }
 
-Model loadModel(const std::string& name, const Options& options, const VolumeScale* scale, Console& console) {
+Model loadModel(const std::string& name, const Options& options, const VolumeScale* scale, Console& console,
+                const RegionRequest& request) {
     const ProgressStage stage(console, "model " + name);
     Model model;
     const auto shapes = shapeNames();
@@ -99,6 +157,19 @@ Model loadModel(const std::string& name, const Options& options, const VolumeSca
     else
         throw ModelError(name, "is neither a file nor a shape that the program can make", shapeHint(name, shapes));
     model.name = model.mesh.name;
+    const std::optional<Imath::Box3d> box = request.existing ? request.existing->box : regionBoxOf(options);
+    // The piece of a region is open at the box's sides, and stays so.
+    if (!request.existing || RegionModel::hashOf(model.mesh) != request.existing->pieceHash) {
+        model.findings = repairMesh(model.mesh, repairModeNamed(options.repair));
+        tellFindings(model.findings, 0, 0, console);
+    }
+    if (box) {
+        cutRegion(model, *box, options, scale, request, console);
+        return model;
+    }
+    if (!options.context.empty())
+        throw Error(ExitCode::commandLine, "--context", "is for close-ups: there is no --region",
+                    "add --region or --region-at");
     if (options.atlas || !model.mesh.hasUvs()) {
         if (!options.atlas)
             console.notice("the model has no UVs: each face gets a tile of its own");
@@ -129,11 +200,16 @@ Model loadModel(const std::string& name, const Options& options, const VolumeSca
     model.surface = makeLimitSurface(model.mesh, limit);
     if (!model.surface.note.empty())
         console.warning(model.surface.note);
+    if (!scale) {
+        const std::size_t warned = model.findings.warnings.size(), noticed = model.findings.notices.size();
+        checkWalls(model.surface, model.scale.voxelSize, model.longestSide, model.findings);
+        tellFindings(model.findings, warned, noticed, console);
+    }
     const double um = model.scale.metresPerUnit * 1e6;
     const Imath::V3f size = model.surface.bounds().size();
     console.notice(fmt::format("{}: {} × {} × {}, {} triangles, {}; voxels of {}", model.name,
                                readableLength(size.x * um), readableLength(size.y * um), readableLength(size.z * um),
-                               model.surface.triangles.size(), model.surface.closed ? "closed" : "open, gets a back",
+                               model.surface.triangles.size(), describeShells(model),
                                readableLength(model.scale.voxelSize * um)));
     return model;
 }

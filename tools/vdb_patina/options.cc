@@ -81,6 +81,12 @@ void addModelOptions(CLI::App& app, Options& options) {
         ->check(wholeNumberWithin(0, 7))
         ->type_name("L")
         ->group(group);
+    app.add_option("--repair", options.repair,
+                   "Models with holes: auto closes those of what has an inside, holes all, sheet none; none takes the "
+                   "model as it is or refuses it (default auto)")
+        ->check(oneOf({"auto", "holes", "sheet", "none"}))
+        ->type_name("HOW")
+        ->group(group);
     app.add_flag("--atlas", options.atlas, "Replace the model's UVs by a tile for each face")->group(group);
 }
 
@@ -102,6 +108,21 @@ void addVolumeOptions(CLI::App& app, Options& options) {
     app.add_option("--seed", options.seed, "Seed of all randomness (default: the script's, or 0)")
         ->check(wholeNumberWithin(0, 9007199254740992))
         ->type_name("S")
+        ->group(group);
+}
+
+void addRegionOptions(CLI::App& app, Options& options) {
+    const std::string group = "Close-up";
+    auto* box = app.add_option("--region", options.region,
+                               "A box of the model alone, two opposite corners in scene units; --voxels is along its side")
+                    ->type_name("X0,Y0,Z0,X1,Y1,Z1")
+                    ->group(group);
+    app.add_option("--region-at", options.regionAt, "The same as a cube: its middle and the length of its sides")
+        ->excludes(box)
+        ->type_name("X,Y,Z,SIZE")
+        ->group(group);
+    app.add_option("--context", options.context, "A .vdb of the whole model: its fields hold for the region")
+        ->type_name("WHOLE.vdb")
         ->group(group);
 }
 

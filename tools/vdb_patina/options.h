@@ -29,12 +29,16 @@ struct Options {
     std::string scheme = "automatic";
     int subdivide = -1;
     bool atlas = false;
+    std::string repair; ///< auto, holes, sheet or none; empty: not given, auto
 
     // The volume.
     int voxels = 256;
     double voxelSize = 0.0; ///< scene units; 0: from voxels
     double exaggeration = 1.0;
     std::optional<std::uint64_t> seed;
+    std::string region;   ///< "x0,y0,z0,x1,y1,z1", scene units; empty: the whole model
+    std::string regionAt; ///< "x,y,z,size"
+    std::string context;  ///< a volume of the whole model, for its fields
 
     // The maps and the picture.
     int resolution = 1024;
@@ -62,6 +66,7 @@ void addGeneralOptions(CLI::App& app, Options& options);
 void addOutputOption(CLI::App& app, Options& options);
 void addModelOptions(CLI::App& app, Options& options);
 void addVolumeOptions(CLI::App& app, Options& options);
+void addRegionOptions(CLI::App& app, Options& options);
 void addMapOptions(CLI::App& app, Options& options);
 void addPictureOptions(CLI::App& app, Options& options);
 void addRunOptions(CLI::App& app, Options& options);

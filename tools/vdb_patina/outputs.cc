@@ -29,6 +29,58 @@ std::filesystem::path outputFolder(const Options& options, const std::string& na
     return folder;
 }
 
+// A close-up lies on the photographer's table, wherever on the model it was cut out: its mean normal half way between
+// the front and up. Its sides are cuts, not the inside of a body.
+static void turnToViewer(SurfaceMesh& surface, UpAxis up) {
+    surface.closed = false;
+    Imath::V3d area(0.0);
+    double total = 0.0;
+    for (const Imath::V3i& t : surface.triangles) {
+        const Imath::V3d a(surface.positions[t[0]]);
+        const Imath::V3d cross =
+            (Imath::V3d(surface.positions[t[1]]) - a).cross(Imath::V3d(surface.positions[t[2]]) - a);
+        area += cross;
+        total += cross.length();
+    }
+    if (!(area.length() > 0.1 * total))
+        return; // it looks all ways
+    const Frame set = uprightFrame(up);
+    const auto axes = [](const Imath::V3d& normal, const Imath::V3d& upward, Imath::V3d* frame) {
+        frame[0] = normal.normalized();
+        Imath::V3d side = upward.cross(frame[0]);
+        if (side.length() < 1e-3)
+            side = Imath::V3d(upward.y, upward.z, upward.x).cross(frame[0]);
+        frame[1] = side.normalized();
+        frame[2] = frame[0].cross(frame[1]);
+    };
+    const Imath::V3d upward(set.normal), front(-set.bitangent);
+    Imath::V3d from[3], to[3];
+    axes(area, upward, from);
+    axes(front + upward, upward, to);
+    const auto turn = [&](Imath::V3f& v) {
+        const Imath::V3d w(v);
+        v = Imath::V3f(to[0] * from[0].dot(w) + to[1] * from[1].dot(w) + to[2] * from[2].dot(w));
+    };
+    std::for_each(surface.positions.begin(), surface.positions.end(), turn);
+    std::for_each(surface.normals.begin(), surface.normals.end(), turn);
+}
+
+// Displacement is in the model's units, which a volume of very small voxels is not.
+static void toModelUnits(MapSet& maps, double magnification) {
+    if (magnification == 1.0)
+        return;
+    for (MapImage& map : maps.maps) {
+        if (map.name != "displacement" && map.name != "vector_displacement")
+            continue;
+        for (float& value : map.floats)
+            value = static_cast<float>(value / magnification);
+        for (auto& [name, number] : map.numbers)
+            if (name == "patina_max_displacement")
+                number = static_cast<float>(number / magnification);
+    }
+    maps.summary.maxDisplacement = static_cast<float>(maps.summary.maxDisplacement / magnification);
+}
+
 BakeSummary writeMaps(const LayerVolume& volume, const Model& model, const StackOptics& optics, const Options& options,
                       const std::filesystem::path& folder, std::vector<std::string>& outputs, Console& console) {
     BakeOptions bakeOptions;
@@ -40,6 +92,7 @@ BakeSummary writeMaps(const LayerVolume& volume, const Model& model, const Stack
         const ProgressStage stage(console, "bake maps");
         maps = bake(volume, model.surface, optics, bakeOptions, console);
     }
+    toModelUnits(maps, model.magnification());
     const ProgressStage stage(console, "write maps");
     for (MapImage& map : maps.maps) {
         console.checkpoint();
@@ -57,7 +110,14 @@ void writeMeshes(const Model& model, const std::string& name, const std::filesys
                  std::vector<std::string>& outputs, Console& console) {
     const ProgressStage stage(console, "write meshes");
     writeObj(model.mesh, folder / (name + ".obj"));
-    writePly(model.surface, folder / (name + "_limit.ply"));
+    if (model.region) {
+        SurfaceMesh placed = model.surface;
+        for (Imath::V3f& p : placed.positions)
+            p = Imath::V3f(model.toModel(Imath::V3d(p)));
+        writePly(placed, folder / (name + "_limit.ply"));
+    } else {
+        writePly(model.surface, folder / (name + "_limit.ply"));
+    }
     outputs.push_back(name + ".obj");
     outputs.push_back(name + "_limit.ply");
 }
@@ -66,10 +126,12 @@ void writePicture(const LayerVolume& volume, const Model& model, const StackOpti
                   const std::filesystem::path& file, Console& console) {
     const ProgressStage stage(console, "render " + file.filename().string());
     const StackShader shader(volume, model.surface, optics);
-    const SurfaceMesh surface = displaced(model.surface, shader.vertexHeights());
+    SurfaceMesh surface = displaced(model.surface, shader.vertexHeights());
+    if (model.region)
+        turnToViewer(surface, options.up);
 
     const Imath::Box3f bounds = surface.bounds();
-    CameraView view = automaticView(model.surface, options.up);
+    CameraView view = automaticView(surface, options.up);
     if (options.azimuth)
         view.azimuthDegrees = static_cast<float>(*options.azimuth);
     if (options.elevation)
@@ -89,6 +151,10 @@ void writePicture(const LayerVolume& volume, const Model& model, const StackOpti
     RenderScene scene;
     scene.surface = &surface;
     scene.up = options.up;
+    if (model.region) {
+        scene.ground = false;
+        scene.background = Imath::V3f(0.18f);
+    }
     scene.material = [&](const SurfacePoint& point, const Imath::V3f&) { return shader.bsdf(point); };
     const Camera camera = Camera::framed(surface.positions, view, float(render_.width) / float(render_.height));
     const Lights lights = studioLights(options.up, view.azimuthDegrees);

@@ -1,8 +1,11 @@
 #include "report.h"
 
 #include "optics/colour.h"
+#include "surface/mesh_repair.h"
 
 #include <sys/resource.h>
+
+#include <algorithm>
 
 namespace patina::tool {
 
@@ -41,6 +44,51 @@ Json describe(const StatementReport& statement) {
     return json;
 }
 
+Json describe(const MeshReport::Fault& fault) {
+    return {{"count", fault.count}, {"first", fault.where}};
+}
+
+Json describe(const MeshReport& findings) {
+    constexpr std::size_t most = 1000; // of shells and holes, so that the report stays readable
+    Json json = {{"repaired", findings.repaired}};
+    json["shell_count"] = findings.shells.size();
+    json["shells"] = Json::array();
+    for (std::size_t i = 0; i < std::min(most, findings.shells.size()); ++i) {
+        const MeshReport::Shell& shell = findings.shells[i];
+        json["shells"].push_back({{"kind", nameOf(shell.kind)},
+                                  {"faces", shell.faces},
+                                  {"area", shell.area},
+                                  {"volume", shell.volume},
+                                  {"turned_over", shell.turnedOver},
+                                  {"turned_faces", shell.turnedFaces},
+                                  {"open_edges", shell.openEdges},
+                                  {"first_face", shell.firstFace + 1},
+                                  {"at", {shell.place.x, shell.place.y, shell.place.z}}});
+    }
+    json["hole_count"] = findings.holes.size();
+    json["holes"] = Json::array();
+    for (std::size_t i = 0; i < std::min(most, findings.holes.size()); ++i) {
+        const MeshReport::Hole& hole = findings.holes[i];
+        json["holes"].push_back({{"closed", hole.closed},
+                                 {"crack", hole.crack},
+                                 {"edges", hole.edges},
+                                 {"area", hole.area},
+                                 {"vertex", hole.vertex + 1},
+                                 {"at", {hole.centre.x, hole.centre.y, hole.centre.z}}});
+    }
+    json["turned_faces"] = describe(findings.turnedFaces);
+    json["copied_faces"] = describe(findings.copiedFaces);
+    json["flat_faces"] = describe(findings.flatFaces);
+    json["edges_of_many_faces"] = describe(findings.crowdedEdges);
+    json["pinched_vertices"] = describe(findings.pinchedVertices);
+    json["one_sided_edges"] = describe(findings.oneSidedEdges);
+    json["piercing_faces"] = describe(findings.piercedFaces);
+    json["thin_walls"] = {{"fraction", findings.thinWalls.fraction},
+                          {"thinnest_units", findings.thinWalls.thinnest},
+                          {"where", findings.thinWalls.where}};
+    return json;
+}
+
 } // namespace
 
 Json describeStatements(const std::vector<StatementReport>& statements) {
@@ -61,11 +109,12 @@ Json makeReport(const Program& program, const Model& model, const Options& optio
                         {"model_hash", volume.provenance.modelHash},
                         {"seed", volume.provenance.seed},
                         {"unit", options.unit},
-                        {"voxel_size_units", volume.scale().voxelSize},
+                        {"voxel_size_units", volume.scale().voxelSize / model.magnification()},
                         {"voxel_size_um", volume.scale().voxelSize * volume.scale().metresPerUnit * 1e6},
                         {"exaggeration", volume.scale().exaggeration}};
     for (const Parameter& parameter : program.parameters)
         report["inputs"]["parameters"][parameter.name] = parameter.value;
+    report["model"] = describe(model.findings);
     report["surface"] = {{"triangles", model.surface.triangles.size()},
                          {"closed", model.surface.closed},
                          {"area_m2", stack.areaM2},

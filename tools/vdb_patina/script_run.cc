@@ -12,6 +12,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace patina::tool {
 
 namespace {
@@ -23,10 +26,17 @@ double machineMemoryBytes() {
 }
 
 // Where a script goes on from a volume, that volume's scale holds, and not the command line's.
-std::optional<VolumeScale> scaleOfOpened(const Program& program) {
+std::optional<VolumeScale> scaleOfOpened(const Program& program, const Options& options, RegionRequest& request) {
     for (const Statement& statement : program.statements)
-        if (const auto* open = std::get_if<OpenFile>(&statement.action))
-            return readVolume(open->file).scale();
+        if (const auto* open = std::get_if<OpenFile>(&statement.action)) {
+            if (!options.region.empty() || !options.regionAt.empty())
+                throw Error(ExitCode::commandLine, "--region",
+                            fmt::format("the script goes on from '{}', which has its own extent", open->file),
+                            "leave the region out, or start the script with new");
+            const LayerVolume volume = readVolume(open->file);
+            request = RegionRequest::of(volume, open->file);
+            return volume.scale();
+        }
     return std::nullopt;
 }
 
@@ -44,8 +54,16 @@ Task prepareTask(const std::string& script, const std::string& modelName, const 
     CheckContext context = checkContext(materials, options);
     // Once without the model: a script's errors are told before a large model is read.
     Program program = readProgramFile(script, context);
-    const std::optional<VolumeScale> scale = scaleOfOpened(program);
-    Model model = loadModel(modelName, options, scale ? &*scale : nullptr, console);
+    RegionRequest region;
+    const std::optional<VolumeScale> scale = scaleOfOpened(program, options, region);
+    region.reachVoxels = [&](const VolumeScale& s) {
+        return std::max({4.0, bandOutsideVoxels(program, s),
+                         std::ceil(deepestPitVoxels(program, s)) + 3.0});
+    };
+    Model model = loadModel(modelName, options, scale ? &*scale : nullptr, console, region);
+    if (model.region && !model.whole)
+        throw ModelError(modelName, "is the piece of a region: a script needs the whole model",
+                         "give the model that the region was cut out of");
     context.vertexAttributes.emplace();
     for (const auto& attribute : model.surface.vertexAttributes)
         context.vertexAttributes->push_back(attribute.first);
@@ -63,11 +81,13 @@ RunOptions runOptionsOf(const Task& task, const Options& options) {
     run.seed = options.seed ? *options.seed : task.program.seed.value_or(0);
     run.programVersion = PATINA_VERSION;
     run.modelName = task.model.name;
+    run.region = task.model.whole.get();
+    run.context = task.model.context.get();
     return run;
 }
 
 void checkBudget(const Task& task, const Options& options, Console& console) {
-    const Budget budget = estimateBudget(task.program, task.model.surface, task.model.scale, options.resolution);
+    const Budget budget = estimateBudget(task.program, task.model.whole ? task.model.whole->work() : task.model.surface, task.model.scale, options.resolution);
     const double limit = options.budgetGiB > 0.0 ? options.budgetGiB * 1073741824.0 : 0.8 * machineMemoryBytes();
     const std::string text = fmt::format(
         "budget: {:.3g} million voxels in the band, volume {}, peak memory {}, disk {}", budget.activeVoxels * 1e-6,

@@ -1,0 +1,30 @@
+#pragma once
+// The frames of a history of weather, each going on from the one before.
+
+#include "console.h"
+#include "options.h"
+
+#include "render/contact_sheet.h"
+#include "script/weather_script.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace patina::tool {
+
+struct WeatherSeries {
+    std::string model;         ///< file, or a shape of `make`
+    std::string environment;   ///< names scripts and volumes
+    std::string maps = "last"; ///< of which frames maps are baked: all, last, none
+    std::vector<WeatherFrame> frames;
+};
+
+/// Runs the frames in folders of their own below `folder`. Pictures are numbered there as a sequence besides.
+/// With options.resume, frames that are there and were made by the same script are kept.
+/// \return the pictures, labelled with their years; empty where the options ask for none
+/// \throws Error (interrupted) naming what is finished
+std::vector<LabelledImage> runWeatherSeries(const WeatherSeries& series, const Options& options,
+                                            const std::filesystem::path& folder, Console& console);
+
+} // namespace patina::tool
