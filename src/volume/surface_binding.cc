@@ -79,7 +79,7 @@ SurfaceBinding::SurfaceBinding(const LayerVolume& volume, const SurfaceMesh& sur
     rebind(volume);
 }
 
-void SurfaceBinding::findVisible(const LayerVolume& volume) {
+bool SurfaceBinding::findVisible(const LayerVolume& volume) {
     const NestSampler sampler(volume.grids());
     const double voxelSize = volume.scale().voxelSize;
     const std::size_t count = closed_.triangles.size();
@@ -120,15 +120,15 @@ void SurfaceBinding::findVisible(const LayerVolume& volume) {
     const auto samePieces = [](const Piece& a, const Piece& b) { return std::equal(a.corners, a.corners + 3, b.corners); };
     if (scene_ && visible == visible_ && pieces.size() == pieces_.size() &&
         std::equal(pieces.begin(), pieces.end(), pieces_.begin(), samePieces))
-        return;
+        return false;
     visible_ = std::move(visible);
     pieces_ = std::move(pieces);
     scene_.emplace(positions.empty() ? closed_.positions : positions, triangles);
+    return true;
 }
 
-void SurfaceBinding::rebind(const LayerVolume& volume) {
+void SurfaceBinding::countVoxels(const LayerVolume& volume) {
     const auto leaves = leavesOf(std::as_const(volume.grids().base->tree()));
-    const double voxelSize = volume.scale().voxelSize;
     leafStart_.resize(leaves.size() + 1);
     std::size_t total = 0;
     for (std::size_t n = 0; n < leaves.size(); ++n) {
@@ -136,7 +136,13 @@ void SurfaceBinding::rebind(const LayerVolume& volume) {
         total += leaves[n]->onVoxelCount();
     }
     leafStart_[leaves.size()] = total;
-    points_.assign(total, SurfacePoint());
+}
+
+void SurfaceBinding::rebind(const LayerVolume& volume) {
+    const auto leaves = leavesOf(std::as_const(volume.grids().base->tree()));
+    const double voxelSize = volume.scale().voxelSize;
+    countVoxels(volume);
+    points_.assign(leafStart_.back(), SurfacePoint());
     tbb::parallel_for(std::size_t(0), leaves.size(), [&](std::size_t n) {
         std::size_t at = leafStart_[n];
         for (auto voxel = leaves[n]->cbeginValueOn(); voxel; ++voxel, ++at) {
@@ -154,7 +160,7 @@ void SurfaceBinding::refineBase(LayerVolume& volume) {
     const double voxelSize = volume.scale().voxelSize;
     const double deepest = (grids.interiorBand + 0.5) * voxelSize;
     const float inside = -grids.base->background();
-    std::vector<char> left(leaves.size(), 0);
+    std::vector<char> left(points_.size(), 0);
     tbb::parallel_for(std::size_t(0), leaves.size(), [&](std::size_t n) {
         std::size_t at = leafStart_[n];
         for (auto voxel = leaves[n]->beginValueOn(); voxel; ++voxel, ++at) {
@@ -169,7 +175,7 @@ void SurfaceBinding::refineBase(LayerVolume& volume) {
             }
             if (*voxel < 0.f && distance > deepest) {
                 leaves[n]->setValueOff(voxel.pos(), inside);
-                left[n] = 1;
+                left[at] = 1;
             } else {
                 voxel.setValue(std::copysign(static_cast<float>(distance), *voxel));
             }
@@ -179,9 +185,18 @@ void SurfaceBinding::refineBase(LayerVolume& volume) {
         openvdb::tools::pruneLevelSet(grids.base->tree());
         auto tree = std::make_shared<openvdb::Int32Tree>(grids.base->tree(), 0, openvdb::TopologyCopy());
         grids.material->setTree(tree);
-        // Bound anew to the grid as it now is, so that a volume read from a file is bound alike.
-        findVisible(volume);
-        rebind(volume);
+        // Bound to the grid as it now is, so that a volume read from a file is bound alike: anew where that changes
+        // what can be seen, else by the same points without those of the voxels that left.
+        if (findVisible(volume)) {
+            rebind(volume);
+        } else {
+            std::size_t kept = 0;
+            for (std::size_t at = 0; at < points_.size(); ++at)
+                if (!left[at])
+                    points_[kept++] = points_[at];
+            points_.resize(kept);
+            countVoxels(volume);
+        }
     }
     updateMaterialIds(volume);
 }

@@ -42,7 +42,8 @@ class SurfaceBinding {
     bool occluded(const Imath::V3f& origin, const Imath::V3f& direction) const;
 
   private:
-    void findVisible(const LayerVolume& volume);
+    bool findVisible(const LayerVolume& volume); ///< whether that is other than before
+    void countVoxels(const LayerVolume& volume); ///< into leafStart_
 
     const SurfaceMesh* surface_;
     ClosedSurface closed_;

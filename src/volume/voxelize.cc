@@ -45,46 +45,8 @@ struct Interrupter {
     bool wasInterrupted(int = -1) { return progress.cancelled(); }
 };
 
-// Whether there is air, by the winding, at a triangle that has metal on both its sides in the grid. (The library leaves
-// no band around such triangles, so that no voxel tells.)
-bool hasBuriedAir(const openvdb::FloatGrid& grid, const ClosedSurface& surface, const WindingNumber& winding,
-                  double voxelSize) {
-    constexpr std::size_t mostAsked = 20000;
-    const auto sides = [&](std::size_t t) {
-        const Imath::V3i& c = surface.triangles[t];
-        const Imath::V3d a(surface.positions[c[0]]), b(surface.positions[c[1]]), d(surface.positions[c[2]]);
-        const Imath::V3d away = (b - a).cross(d - a).normalized() * (1.5 * voxelSize), middle = (a + b + d) / 3.0;
-        return std::pair(middle + away, middle - away);
-    };
-    std::vector<char> buried(surface.triangles.size(), 0);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, buried.size(), 1024), [&](const auto& range) {
-        const auto accessor = grid.getConstAccessor();
-        const auto isMetal = [&](const Imath::V3d& p) {
-            return accessor.getValue(openvdb::Coord::round(openvdb::Vec3d(p.x, p.y, p.z) / voxelSize)) < 0.f;
-        };
-        for (std::size_t t = range.begin(); t != range.end(); ++t) {
-            const auto [front, back] = sides(t);
-            buried[t] = isMetal(front) && isMetal(back);
-        }
-    });
-    std::vector<std::size_t> asked;
-    for (std::size_t t = 0; t < buried.size(); ++t)
-        if (buried[t])
-            asked.push_back(t);
-    const std::size_t step = 1 + asked.size() / mostAsked;
-    std::atomic<bool> air{false};
-    tbb::parallel_for(std::size_t(0), (asked.size() + step - 1) / step, [&](std::size_t i) {
-        if (air)
-            return;
-        const auto [front, back] = sides(asked[i * step]);
-        if (winding.at(front) < 0.5 || winding.at(back) < 0.5)
-            air = true;
-    });
-    return air;
-}
-
-// The library takes for metal whatever the outside cannot reach, cavities too. Where that is not what the triangles'
-// winding says, the band is made once more without signs and gets its own.
+// The library's own signs take for metal whatever the outside cannot reach, cavities too. So the band is made without
+// signs, and gets those of the triangles' winding.
 openvdb::FloatGrid::Ptr voxelizeByWinding(const TriangleAdapter& adapter, const WindingNumber& winding,
                                           const VoxelizeOptions& options, Interrupter& interrupter) {
     const double voxelSize = options.scale.voxelSize;
@@ -115,19 +77,10 @@ openvdb::FloatGrid::Ptr voxelizeByWinding(const TriangleAdapter& adapter, const 
 LayerVolume voxelize(const ClosedSurface& surface, const VoxelizeOptions& options, Progress& progress) {
     const double voxelSize = options.scale.voxelSize;
     const TriangleAdapter adapter(surface, voxelSize);
-    const auto transform = openvdb::math::Transform::createLinearTransform(voxelSize);
     Interrupter interrupter{progress};
     auto grids = std::make_unique<NestGrids>();
-    grids->base = openvdb::tools::meshToVolume<openvdb::FloatGrid>(interrupter, adapter, *transform,
-                                                                   static_cast<float>(options.exteriorBand),
-                                                                   static_cast<float>(options.interiorBand));
-    progress.checkpoint();
     const WindingNumber winding(surface.positions, surface.triangles);
-    const SideGroups groups(*grids->base, voxelSize);
-    if (groups.agree(winding) && !hasBuriedAir(*grids->base, surface, winding, voxelSize))
-        groups.correct(winding, *grids->base);
-    else
-        grids->base = voxelizeByWinding(adapter, winding, options, interrupter);
+    grids->base = voxelizeByWinding(adapter, winding, options, interrupter);
     progress.checkpoint();
     grids->interiorBand = options.interiorBand;
     grids->exteriorBand = options.exteriorBand;

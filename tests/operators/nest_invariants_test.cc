@@ -6,7 +6,7 @@ namespace patina {
 namespace {
 
 TEST(Nest, StaysNestedWithTrueIdsThroughRandomOperations) {
-    test::runSequences(0, 40);
+    test::runSequences(0, 40, {2});
 }
 
 TEST(Nest, HasTheSameBitsOnAnyNumberOfThreads) {

@@ -14,10 +14,12 @@
 #include "volume/nest_grids.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <cmath>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace patina::test {
 
@@ -73,11 +75,21 @@ inline void expectInvariants(LayerVolume& volume, int sequence) {
     ASSERT_EQ(updateMaterialIds(volume), 0u) << "IDs were not true, sequence " << sequence;
 }
 
-inline void runSequences(int first, int last) {
+/// \param threads  each sequence is run on each of these numbers of threads, with the same bits
+inline void runSequences(int first, int last, const std::vector<std::size_t>& threads) {
     for (int sequence = first; sequence < last && !testing::Test::HasFatalFailure(); ++sequence) {
-        const auto piece = makePiece(sphere(7.f, 3), voxelScale(), 8.0);
-        randomOperations(*piece, sequence);
-        expectInvariants(*piece->volume, sequence);
+        std::string bits;
+        for (const std::size_t count : threads) {
+            tbb::global_control limit(tbb::global_control::max_allowed_parallelism, count);
+            const auto piece = makePiece(sphere(7.f, 3), voxelScale(), 8.0);
+            randomOperations(*piece, sequence);
+            const std::string hash = contentHash(*piece->volume);
+            if (bits.empty()) {
+                bits = hash;
+                expectInvariants(*piece->volume, sequence);
+            }
+            ASSERT_EQ(hash, bits) << "sequence " << sequence << " on " << count << " threads";
+        }
     }
 }
 

@@ -60,6 +60,21 @@ Image imageOfMap(const MapImage& map) {
     return image;
 }
 
+// The part of a map that the model's charts use: outside them are only their gutters.
+Image cutToCharts(const Image& map, const SurfaceMesh& surface) {
+    Imath::Box2f charts;
+    for (const Imath::V2f& uv : surface.uvs)
+        charts.extendBy(uv);
+    const auto texel = [](float share, int size) { return std::clamp(int(std::lround(share * float(size))), 0, size); };
+    const int left = texel(charts.min.x, map.width), right = texel(charts.max.x, map.width);
+    const int top = texel(1.f - charts.max.y, map.height), bottom = texel(1.f - charts.min.y, map.height);
+    Image cut(right - left, bottom - top);
+    for (int y = 0; y < cut.height; ++y)
+        for (int x = 0; x < cut.width; ++x)
+            cut.setRgb(x, y, map.rgb(left + x, top + y));
+    return cut.empty() ? map : cut;
+}
+
 class FigureMaker {
   public:
     FigureMaker(const Options& options, fs::path folder, Console& console)
@@ -103,7 +118,7 @@ class FigureMaker {
             const MapImage* map = maps.find(what.map);
             if (!map)
                 throw RunError(what.name, fmt::format("there is no map '{}'", what.map));
-            return {imageOfMap(*map), what.label};
+            return {cutToCharts(imageOfMap(*map), made_.task->model.surface), what.label};
         }
         if (what.kind == FigurePanel::Kind::slice) {
             SectionInput input;

@@ -82,8 +82,7 @@ void addModelOptions(CLI::App& app, Options& options) {
         ->type_name("L")
         ->group(group);
     app.add_option("--repair", options.repair,
-                   "Models with holes: auto closes those of what has an inside, holes all, sheet none; none takes the "
-                   "model as it is or refuses it (default auto)")
+                   "Holes of models: auto closes those of what has an inside, holes all, sheet none; none: refuse them")
         ->check(oneOf({"auto", "holes", "sheet", "none"}))
         ->type_name("HOW")
         ->group(group);

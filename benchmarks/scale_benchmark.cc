@@ -1,0 +1,99 @@
+// A statue from 256 to 1024 voxels: time and memory of six layers and what follows them, against the memory formula.
+
+#include "operators/coat.h"
+#include "operators/erode.h"
+#include "operators/fill.h"
+#include "operators/offset.h"
+#include "operators/polish.h"
+
+#include "support/test_surfaces.h"
+#include "surface/limit_surface.h"
+#include "surface/mesh_file.h"
+#include "volume/nest_grids.h"
+
+#include <benchmark/benchmark.h>
+#include <sys/resource.h>
+
+#include <chrono>
+
+namespace patina {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// The most memory that the process has had so far, bytes.
+double peakBytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return 1024.0 * double(usage.ru_maxrss);
+}
+
+// Argument: voxels along the longest side. Run one alone where the peak matters (--benchmark_filter=…/1024): it is the
+// process's, which includes the runs before.
+void SixLayersOnAStatue(benchmark::State& state) {
+    const std::string model = std::string(PATINA_SOURCE_DIR) + "/../shared/data/meshes/happy_buddha_60k_uv.obj";
+    for (auto _ : state) {
+        const double before = peakBytes();
+        const auto begin = Clock::now();
+        std::unique_ptr<test::Piece> piece;
+        try {
+            LimitSurfaceOptions limit;
+            limit.scheme = SubdivisionScheme::none;
+            SurfaceMesh surface = makeLimitSurface(readMesh(model), limit);
+            Imath::Box3f box;
+            for (const Imath::V3f& p : surface.positions)
+                box.extendBy(p);
+            const double side = (box.max - box.min)[box.majorAxis()];
+            VolumeScale scale;
+            scale.voxelSize = side / double(state.range(0));
+            scale.metresPerUnit = 0.2 / side; // a statue of 20 cm
+            piece = test::makePiece(std::move(surface), scale);
+        } catch (const std::exception& error) {
+            state.SkipWithError(error.what());
+            return;
+        }
+        const double voxelized = secondsSince(begin);
+        Workpiece work = piece->work();
+        const test::FunctionMap map([&](const MapPoint& point) {
+            return 0.5 + 0.5 * std::sin(point.position.y * 200.0 / (piece->volume->scale().voxelSize * double(state.range(0))));
+        });
+        coat(work, "tarnish_1", 0.35, nullptr, piece->progress);
+        coat(work, "cuprite_2", 1.2, &map, piece->progress);
+        coat(work, "marine_patina_3", 3.0, &map, piece->progress);
+        coat(work, "marine_patina_4", 1.8, nullptr, piece->progress);
+        erode(work, 0.5, &map, {}, piece->progress);
+        fill(work, "dirt", 4.0, nullptr, piece->progress);
+        polish(work, 5.8, nullptr, piece->progress);
+        // A ball of the same size in the world: its layer grows with the resolution as all else does.
+        const double radius = 4.0 / 512.0 * double(state.range(0)) * piece->volume->scale().voxelSize;
+        offset(work, "wax", radius, false, piece->progress);
+        state.SetIterationTime(secondsSince(begin));
+
+        const NestGrids& grids = piece->volume->grids();
+        const double leafVoxels = double(piece->volume->leafCount()) * 512.0;
+        const double formula = 4.0 * leafVoxels * (piece->volume->layerCount() + 2.0);
+        state.counters["voxelize_s"] = voxelized;
+        state.counters["layers"] = piece->volume->layerCount();
+        state.counters["Mvoxels"] = 1e-6 * double(piece->volume->activeVoxels());
+        state.counters["grids_MB"] = 1e-6 * double(piece->volume->memoryBytes());
+        state.counters["of_formula"] = double(piece->volume->memoryBytes()) / formula;
+        state.counters["peak_MB"] = 1e-6 * peakBytes();
+        state.counters["peak_of_formula"] = (peakBytes() - before) / (1.15 * formula);
+        benchmark::DoNotOptimize(grids);
+    }
+}
+BENCHMARK(SixLayersOnAStatue)
+    ->Arg(256)
+    ->Arg(512)
+    ->Arg(1024)
+    ->ArgName("voxels")
+    ->Iterations(1)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+
+} // namespace
+} // namespace patina
