@@ -93,6 +93,7 @@ void OffsetEightVoxels(benchmark::State& state) {
     }
 }
 BENCHMARK(OffsetEightVoxels)
+    ->Args({256, 0})
     ->Args({256, 1})
     ->Args({512, 1})
     ->ArgNames({"voxels", "library"})

@@ -117,7 +117,9 @@ bool SurfaceBinding::findVisible(const LayerVolume& volume) {
                 piece.corners[c] = Imath::V2f(part.uvs[c]);
             }
         }
-    const auto samePieces = [](const Piece& a, const Piece& b) { return std::equal(a.corners, a.corners + 3, b.corners); };
+    const auto samePieces = [](const Piece& a, const Piece& b) {
+        return std::equal(a.corners, a.corners + 3, b.corners);
+    };
     if (scene_ && visible == visible_ && pieces.size() == pieces_.size() &&
         std::equal(pieces.begin(), pieces.end(), pieces_.begin(), samePieces))
         return false;
@@ -141,6 +143,8 @@ void SurfaceBinding::countVoxels(const LayerVolume& volume) {
 void SurfaceBinding::rebind(const LayerVolume& volume) {
     const auto leaves = leavesOf(std::as_const(volume.grids().base->tree()));
     const double voxelSize = volume.scale().voxelSize;
+    // Metal that only hidden faces are near to has no place in the band: refineBase() takes it out.
+    const auto deepest = static_cast<float>((volume.grids().interiorBand + 0.6) * voxelSize);
     countVoxels(volume);
     points_.assign(leafStart_.back(), SurfacePoint());
     tbb::parallel_for(std::size_t(0), leaves.size(), [&](std::size_t n) {
@@ -149,7 +153,8 @@ void SurfaceBinding::rebind(const LayerVolume& volume) {
             const openvdb::Coord c = voxel.getCoord();
             // phi_0 is the distance to the model, but for the voxeliser's error.
             const auto radius = static_cast<float>(1.02 * std::abs(*voxel) + 0.1 * voxelSize);
-            points_[at] = closest(Imath::V3d(c.x(), c.y(), c.z()) * voxelSize, radius);
+            const Imath::V3d x = Imath::V3d(c.x(), c.y(), c.z()) * voxelSize;
+            points_[at] = closest(x, radius, *voxel < 0.f ? deepest : std::numeric_limits<float>::infinity());
         }
     });
 }
@@ -170,8 +175,11 @@ void SurfaceBinding::refineBase(LayerVolume& volume) {
             if (points_[at].triangle >= 0) {
                 distance = (positionAt(*surface_, points_[at]) - x).length();
             } else {
-                const auto back = scene_->closest(Imath::V3f(x));
-                distance = back ? back->distance : std::abs(*voxel);
+                const bool metal = *voxel < 0.f;
+                const auto back =
+                    metal ? scene_->closest(Imath::V3f(x), static_cast<float>(deepest) + 0.1f * float(voxelSize))
+                          : scene_->closest(Imath::V3f(x));
+                distance = back ? back->distance : metal ? 2.0 * deepest : std::abs(*voxel);
             }
             if (*voxel < 0.f && distance > deepest) {
                 leaves[n]->setValueOff(voxel.pos(), inside);
@@ -201,10 +209,10 @@ void SurfaceBinding::refineBase(LayerVolume& volume) {
     updateMaterialIds(volume);
 }
 
-SurfacePoint SurfaceBinding::closest(const Imath::V3d& position, float radius) const {
+SurfacePoint SurfaceBinding::closest(const Imath::V3d& position, float radius, float widest) const {
     auto found = scene_->closest(Imath::V3f(position), radius);
-    if (!found && radius < std::numeric_limits<float>::infinity())
-        found = scene_->closest(Imath::V3f(position));
+    if (!found && radius < widest)
+        found = scene_->closest(Imath::V3f(position), widest);
     if (!found)
         return {};
     SurfacePoint point = found->point;

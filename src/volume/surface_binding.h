@@ -36,7 +36,9 @@ class SurfaceBinding {
 
     /// The closest point to any position (scene units); triangle -1 on the back.
     /// `radius` (scene units) is a guess at the distance that makes the search short; a wrong one costs time only.
-    SurfacePoint closest(const Imath::V3d& position, float radius = std::numeric_limits<float>::infinity()) const;
+    /// Beyond `widest` nothing is found (triangle -1).
+    SurfacePoint closest(const Imath::V3d& position, float radius = std::numeric_limits<float>::infinity(),
+                         float widest = std::numeric_limits<float>::infinity()) const;
 
     /// Whether the model itself is in the way of a ray to infinity.
     bool occluded(const Imath::V3f& origin, const Imath::V3f& direction) const;

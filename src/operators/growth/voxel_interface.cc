@@ -17,6 +17,7 @@ namespace {
 
 constexpr float noVoxel = std::numeric_limits<float>::max();
 constexpr float least = 0.02f; // of a voxel: a crossing stays clear of voxel centres
+constexpr float bare = 1e-3f;  // of a voxel: a column that ends no higher is none
 
 /// A leaf's values with one voxel around it, 10³ of them; noVoxel outside the band.
 struct PaddedLeaf {
@@ -82,11 +83,13 @@ float valueBeside(const Neighbourhood& near, float phi, float c, bool porous) {
     };
     if (porous) {
         if (near.highestSolid < near.lowestEmpty)
-            return near.solidTop <= 0.f ? phi : apart(phi - near.solidTop);
+            return near.solidTop < bare ? phi : apart(phi - near.solidTop);
         return solid ? -0.5f : 0.5f;
     }
-    if (near.top == 0.f && near.bottom == 0.f)
+    if (near.top < bare && near.bottom > -bare)
         return phi;
+    if (phi - c < bare && std::abs(c) <= 1.f)
+        return phi; // bare beside a column
     if (near.top - near.bottom < 1.f)
         return apart(c);
     return std::abs(c) <= 1.f ? apart(c) : solid ? -0.5f : 0.5f;
