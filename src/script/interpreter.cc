@@ -245,6 +245,34 @@ class Run {
     RunResult result_;
 };
 
+// The growth of a coat's map that coatByVoxelGrowth() would take: the first of a product's factors.
+const GrowthCall* growthOf(const Expression& map) {
+    if (map.kind == Expression::Kind::growth)
+        return map.growth.get();
+    if (map.kind != Expression::Kind::binary || map.text != "*")
+        return nullptr;
+    const GrowthCall* first = growthOf(map.children[0]);
+    return first ? first : growthOf(map.children[1]);
+}
+
+// The highest a coat can make the stack rise: porous layers stand higher than they are thick.
+double highestCoatVoxels(const Coat& coat, const VolumeScale& scale) {
+    const double thickness = coat.thicknessUm * scale.voxelsPerUm();
+    const GrowthCall* call = coat.map ? growthOf(*coat.map) : nullptr;
+    if (!call || !growsInVoxels(scale, coat.thicknessUm, *growthModelNamed(call->model)))
+        return thickness;
+    GrowthOptions options;
+    options.model = *growthModelNamed(call->model);
+    options.rate = *growthRateNamed(call->rate);
+    options.step = call->step;
+    options.total = call->total;
+    options.ofFull = call->ofFull;
+    std::optional<double> cellVoxels;
+    if (call->cellUm)
+        cellVoxels = *call->cellUm * scale.voxelsPerUm() / scale.exaggeration;
+    return highestVoxelGrowth(options, call->since, thickness, cellVoxels);
+}
+
 } // namespace
 
 double thickestStackVoxels(const Program& program, const VolumeScale& scale) {
@@ -257,7 +285,7 @@ double thickestStackVoxels(const Program& program, const VolumeScale& scale) {
     double highest = 0.0;
     for (const Statement& statement : program.statements) {
         if (const auto* coat = std::get_if<Coat>(&statement.action)) {
-            highest += coat->thicknessUm * perUm;
+            highest += highestCoatVoxels(*coat, scale);
         } else if (const auto* grow = std::get_if<Grow>(&statement.action)) {
             highest += grow->thicknessUm * perUm;
         } else if (const auto* fill = std::get_if<Fill>(&statement.action)) {

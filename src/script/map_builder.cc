@@ -326,8 +326,10 @@ std::optional<MapBuilder::CoatGrowth> MapBuilder::buildVoxelGrowth(const Express
     growth.seed = context_.seed;
     growth.label = call->label;
     growth.cubes = !call->cellUm;
-    if (context_.region)
+    if (context_.region) {
         growth.origin = context_.region->region().origin();
+        growth.magnification = context_.region->region().magnification;
+    }
     const SurfaceMesh* const outer = cellSurface_;
     if (const auto piece = pieces_.find(&cells); piece != pieces_.end())
         cellSurface_ = &piece->second->surface;

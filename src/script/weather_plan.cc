@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
 
 namespace patina {
 
@@ -195,6 +196,24 @@ WeatherPlan readWeatherPlan(const fs::path& dataFolder, const std::string& envir
     if (!findings.empty())
         throw ScriptError(findings);
     return plan;
+}
+
+void setLatitude(WeatherPlan& plan, double degrees) {
+    if (!(std::abs(degrees) <= 90.0))
+        throw Error(ExitCode::commandLine, "--latitude", fmt::format("{:g} is beyond the poles", degrees),
+                    "give degrees from -90 (south) to 90 (north)");
+    static const std::regex field(R"(\b(exposure|wetness)\b(?!\s*\())");
+    const auto set = [&](std::string& map) {
+        map = std::regex_replace(map, field, fmt::format("$1(latitude={:g})", degrees));
+    };
+    for (WeatherOxide& oxide : plan.oxides)
+        set(oxide.pattern.map);
+    for (WeatherMineral& mineral : plan.minerals)
+        set(mineral.pattern.map);
+    for (WeatherWear& wear : plan.wear)
+        set(wear.map);
+    for (WeatherDeposit& deposit : plan.deposits)
+        set(deposit.pattern.map);
 }
 
 double patinaThicknessUm(const WeatherPlan& plan, const WeatherKinetics& kinetics, double years) {

@@ -83,6 +83,10 @@ WeatherPlan readWeatherPlan(const std::filesystem::path& dataFolder, const std::
 /// Environments and metals for which there are plans, as "copper_marine".
 std::vector<std::string> weatherPlans(const std::filesystem::path& dataFolder);
 
+/// Sun and rain of another latitude: `exposure` and `wetness` in the plan's maps get the argument.
+/// \throws Error (command line) beyond 90°
+void setLatitude(WeatherPlan& plan, double degrees);
+
 /// How much patina there is after some years.
 struct WeatherKinetics {
     std::string category;  ///< C1 … CX of ISO 9223; empty: the paper's rate

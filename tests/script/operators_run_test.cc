@@ -4,6 +4,7 @@
 
 #include "script/budget.h"
 #include "support/test_surfaces.h"
+#include "volume/stack_probe.h"
 
 #include <gtest/gtest.h>
 
@@ -72,6 +73,37 @@ TEST_F(OperatorsRunTest, PolishAreaAndFillAboveSmoothAndOffsetRun) {
                                  ball_);
     EXPECT_EQ(result.finished, 7u);
     EXPECT_NEAR(result.statements[2].operation.fraction.value_or(0.0), 0.4, 1e-3);
+}
+
+TEST_F(OperatorsRunTest, OffsetByTangentSphereCoatsWhereTheSphereIsSmaller) {
+    // The inside of a bowl of radius 20: spheres of 20 touch it, none larger.
+    SurfaceMesh bowl = test::sheet(30.f, 60);
+    for (std::size_t v = 0; v < bowl.positions.size(); ++v) {
+        Imath::V3f& p = bowl.positions[v];
+        const Imath::V3f out(p.x - 15.f, p.y - 15.f, 0.f);
+        const float z = -std::sqrt(std::max(20.f * 20.f - out.dot(out), 1.f));
+        p.z = 20.f + z;
+        bowl.normals[v] = Imath::V3f(-out.x, -out.y, -z).normalized();
+    }
+    options_.longestSide = 30.0;
+    const auto meanIn = [&](const std::string& offset) {
+        const RunResult result = run("new copper\n" + offset + "\n", bowl);
+        const StackProbe probe(*result.volume);
+        std::vector<double> um(1, 0.0);
+        double sum = 0.0, count = 0.0;
+        for (std::size_t v = 0; v < bowl.positions.size(); ++v) {
+            const Imath::V3f& p = bowl.positions[v];
+            if (std::hypot(p.x - 15.f, p.y - 15.f) > 10.f)
+                continue; // the edge
+            probe.read(Imath::V3d(p), Imath::V3d(bowl.normals[v]), um.data());
+            sum += um[0];
+            count += 1.0;
+        }
+        return sum / count;
+    };
+    EXPECT_NEAR(meanIn("offset wax 23um tangent-sphere 0.5"), 0.5, 0.01);
+    EXPECT_NEAR(meanIn("offset wax 17um tangent-sphere 0.5"), 0.0, 0.01);
+    EXPECT_NEAR(meanIn("offset wax 23um tangent-sphere 0.5 global"), 0.5, 0.01);
 }
 
 TEST_F(OperatorsRunTest, TheBandHoldsWhatTheScriptPilesUp) {

@@ -160,6 +160,21 @@ TEST(Weather, WhatIsNotThereIsSaid) {
     EXPECT_THROW(weatherScripts(plan("marine"), {}, {-1.0}, "x"), Error);
 }
 
+TEST(Weather, TheLatitudeIsOfBothSunAndRain) {
+    WeatherPlan here = plan("urban");
+    setLatitude(here, -33.5);
+    bool sun = false, rain = false;
+    for (const WeatherFrame& frame : weatherScripts(here, {}, {12.0, 30.0}, "urban")) {
+        EXPECT_EQ(frame.script.find("exposure)"), std::string::npos) << frame.script;
+        sun = sun || frame.script.find("exposure(latitude=-33.5)") != std::string::npos;
+        rain = rain || frame.script.find("wetness(latitude=-33.5)") != std::string::npos;
+    }
+    EXPECT_TRUE(sun && rain);
+    setLatitude(here, 10.0); // what has its arguments keeps them
+    EXPECT_NE(here.wear[0].map.find("latitude=-33.5"), std::string::npos) << here.wear[0].map;
+    EXPECT_THROW(setLatitude(here, 90.5), Error);
+}
+
 TEST(Weather, FaultsOfAPlanAreToldWithTheirPlaces) {
     test::TemporaryFolder folder;
     std::filesystem::create_directories(folder.path() / "weather");

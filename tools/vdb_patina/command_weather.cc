@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 namespace patina::tool {
@@ -29,6 +30,7 @@ struct Arguments {
     int frames = 6;
     std::string category;
     bool extremes = false;
+    std::optional<double> latitude;
     std::string maps = "last";
 };
 
@@ -96,7 +98,9 @@ void runHistory(const Arguments& arguments, const WeatherPlan& plan, const Weath
 
 void weather(const Arguments& arguments, const Options& options, Console& console) {
     const std::vector<double> years = yearsOf(arguments);
-    const WeatherPlan plan = readWeatherPlan(findDataFolder(), arguments.environment, arguments.metal);
+    WeatherPlan plan = readWeatherPlan(findDataFolder(), arguments.environment, arguments.metal);
+    if (arguments.latitude)
+        setLatitude(plan, *arguments.latitude);
     WeatherKinetics kinetics;
     kinetics.category = arguments.category;
     patinaThicknessUm(plan, kinetics, 1.0); // an unknown category is told before anything is made
@@ -147,6 +151,9 @@ void addWeatherCommand(CLI::App& app, Options& options, Action& action) {
         ->type_name("C")
         ->group(group);
     command->add_flag("--extremes", arguments->extremes, "Two series, for the least and the most of the category")
+        ->group(group);
+    command->add_option("--latitude", arguments->latitude, "Of the place, degrees, north positive (default 45)")
+        ->type_name("DEGREES")
         ->group(group);
     command->add_option("--maps", arguments->maps, "Bake the maps of all frames, the last (default) or none")
         ->check(oneOf({"all", "last", "none"}))

@@ -91,7 +91,7 @@ Columns porousColumns(const GrowthLattice& lattice, const VoxelGrowth& growth, c
 }
 
 /// c of every voxel of the band, in voxels.
-openvdb::FloatGrid::Ptr offsetsOfVoxels(const Workpiece& work, const GrowthLattice& lattice, const Imath::V3d& origin,
+openvdb::FloatGrid::Ptr offsetsOfVoxels(const Workpiece& work, const GrowthLattice& lattice, const VoxelGrowth& growth,
                                         const Columns& columns, float highest, const Progress& progress) {
     const openvdb::FloatGrid& surface = work.volume.grids().surface();
     const double voxelSize = work.volume.scale().voxelSize;
@@ -102,7 +102,8 @@ openvdb::FloatGrid::Ptr offsetsOfVoxels(const Workpiece& work, const GrowthLatti
     const SurfaceMesh& mesh = work.binding.surface();
     // Voxel centres lie at whole multiples of the voxel size and so do the borders of columns: a quarter of a voxel
     // keeps rounding from having a say.
-    const Imath::V3d nudge = origin + Imath::V3d(0.25 * voxelSize);
+    const double perUnit = 1.0 / growth.magnification;
+    const Imath::V3d nudge = growth.origin + Imath::V3d(0.25 * voxelSize * perUnit);
     tbb::parallel_for(std::size_t(0), from.size(), [&](std::size_t n) {
         if (progress.cancelled())
             return;
@@ -118,7 +119,7 @@ openvdb::FloatGrid::Ptr offsetsOfVoxels(const Workpiece& work, const GrowthLatti
             int cell = GrowthLattice::noCell;
             const SurfacePoint& under = work.binding.at(at);
             if (phi > -2.f && under.triangle >= 0)
-                cell = lookup.cellAt(positionAt(mesh, under) + nudge, normalAt(mesh, under));
+                cell = lookup.cellAt(positionAt(mesh, under) * perUnit + nudge, normalAt(mesh, under));
             offset = columns.offset(cell, phi);
         }
     });
@@ -155,6 +156,25 @@ LevelScale ballisticLevels(const VoxelGrowth& growth, double thicknessVoxels, do
     return {solid / level, level};
 }
 
+double highestVoxelGrowth(const GrowthOptions& options, double since, double thicknessVoxels,
+                          std::optional<double> cellVoxels) {
+    if (options.model != GrowthModel::ballisticDeposition)
+        return thicknessVoxels;
+    // Mean and deviation of the height on a plane of 512² cells within 6 per cent from an age of 4 on; the highest of its
+    // columns stands 6 to 15 levels above its mean velocity's line.
+    const auto mean = [](double age) { return 3.334 * age - 5.5 * (1.0 - std::exp(-age / 3.0)); };
+    const auto sigma = [](double age) { return 4.0 * (1.0 - std::exp(-age / 2.3)); };
+    const auto ageAt = [&](double step) { return growthAge(options.rate, step, options.total); };
+    const double now = ageAt(options.step), normal = options.ofFull ? ageAt(options.total) : now;
+    const double top = mean(normal) + 3.0 * sigma(normal);
+    if (!(top > 0.0))
+        return thicknessVoxels;
+    const double solid = thicknessVoxels * std::min(1.0, (mean(now) - mean(ageAt(since))) / top);
+    const double level = cellVoxels ? std::max(1.0, solid / std::max(1e-9, now - ageAt(since))) : 1.0;
+    const double age = solid / level;
+    return std::max(thicknessVoxels, level * (3.334 * age + 8.0 + 0.12 * age));
+}
+
 VoxelGrowthReport coatByVoxelGrowth(Workpiece& work, const std::string& material, double thicknessUm,
                                     const GrowthLattice& lattice, const VoxelGrowth& growth, Progress& progress) {
     LayerVolume& volume = work.volume;
@@ -168,7 +188,8 @@ VoxelGrowthReport coatByVoxelGrowth(Workpiece& work, const std::string& material
     Columns columns;
     double levelVoxels = 0.0;
     if (porous) {
-        const LevelScale levels = ballisticLevels(growth, thicknessVoxels, lattice.cell / scale.voxelSize);
+        const LevelScale levels = ballisticLevels(
+            growth, thicknessVoxels, lattice.cell * growth.magnification / scale.voxelSize);
         levelVoxels = levels.levelVoxels;
         columns = porousColumns(lattice, growth, levels, report, progress);
     } else {
@@ -187,7 +208,7 @@ VoxelGrowthReport coatByVoxelGrowth(Workpiece& work, const std::string& material
             work.binding.rebind(volume);
             report.operation.grewBand = true;
         }
-        const auto offsets = offsetsOfVoxels(work, lattice, growth.origin, columns, highest, progress);
+        const auto offsets = offsetsOfVoxels(work, lattice, growth, columns, highest, progress);
         columns = Columns();
         auto grown = interfaceOfVoxels(volume.grids().surface(), *offsets, scale.voxelSize, porous, progress);
         if (!extends)

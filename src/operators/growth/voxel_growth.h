@@ -8,6 +8,7 @@
 #include "operators/surface_operation.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,7 @@ struct VoxelGrowth {
     bool cubes = false;
     std::vector<float> factor;           ///< per cell, 0…1: what thickness is multiplied by; empty: 1
     Imath::V3d origin = Imath::V3d(0.0); ///< of the volume in the lattice's coordinates (a region's)
+    double magnification = 1.0;          ///< the volume's units per unit of the lattice's (a region's)
 };
 
 struct VoxelGrowthReport {
@@ -49,6 +51,13 @@ struct LevelScale {
 /// height, for cubes as that many monolayers of cells, otherwise as the monolayers of the step, each as thick as it
 /// takes, but never flatter than a voxel (then fewer arrive).
 LevelScale ballisticLevels(const VoxelGrowth& growth, double thicknessVoxels, double cellVoxels);
+
+/// About how high a coat's grown layer will stand at its highest, voxels: never lower than the thickness. BD's pores lift
+/// it; from the model's known velocity and width, without growing anything. For the band and the budget.
+/// \param thicknessVoxels  as drawn
+/// \param cellVoxels  size of a particle, where the script gives one; cubes of a voxel otherwise
+double highestVoxelGrowth(const GrowthOptions& options, double since, double thicknessVoxels,
+                          std::optional<double> cellVoxels);
 
 /// Adds a grown layer on top of the nest.
 ///
