@@ -59,7 +59,8 @@ void SixLayersOnAStatue(benchmark::State& state) {
         const double voxelized = secondsSince(begin);
         Workpiece work = piece->work();
         const test::FunctionMap map([&](const MapPoint& point) {
-            return 0.5 + 0.5 * std::sin(point.position.y * 200.0 / (piece->volume->scale().voxelSize * double(state.range(0))));
+            return 0.5 + 0.5 * std::sin(point.position.y * 200.0 /
+                                        (piece->volume->scale().voxelSize * double(state.range(0))));
         });
         coat(work, "tarnish_1", 0.35, nullptr, piece->progress);
         coat(work, "cuprite_2", 1.2, &map, piece->progress);

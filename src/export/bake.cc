@@ -143,6 +143,7 @@ MapSet bake(const LayerVolume& volume, const SurfaceMesh& surface, const StackOp
     const StackProbe probe(volume);
     const int size = options.resolution;
     const int layers = volume.layerCount();
+    const ColourSpace space = optics.features().colourSpace;
     const double displacementScale = options.keepExaggeration ? 1.0 : 1.0 / volume.scale().exaggeration;
     std::vector<float> ids{1.f};
     for (const std::string& layer : volume.layers())
@@ -188,9 +189,9 @@ MapSet bake(const LayerVolume& volume, const SurfaceMesh& surface, const StackOp
             put(planes.baseColour, at, look.baseColour);
             put(planes.metallic, at, look.metallic);
             put(planes.roughness, at, look.flattenedRoughness);
-            const Imath::V3d colour(look.baseColour);
-            row.colour += colour;
-            if (labFromXyz(xyzFromLinearRec709(colour)).y < -4.0)
+            const Imath::V3d xyz = xyzFromLinear(Imath::V3d(look.baseColour), space);
+            row.colour += linearRec709FromXyz(xyz);
+            if (labFromXyz(xyz).y < -4.0)
                 ++row.green;
         }
     });
@@ -225,6 +226,7 @@ MapSet bake(const LayerVolume& volume, const SurfaceMesh& surface, const StackOp
     }
 
     const auto take = [&](MapImage& map) {
+        map.colourSpace = space;
         fillGutter(texels, map);
         set.maps.push_back(std::move(map));
     };

@@ -23,6 +23,11 @@ std::vector<const char*> channelNames(int channels) {
     return {"R", "G", "B"};
 }
 
+// SMPTE ST 2065-1 and S-2014-004: primaries AP1 and the white of ACES.
+Imf::Chromaticities acescgChromaticities() {
+    return {{0.713f, 0.293f}, {0.165f, 0.83f}, {0.128f, 0.044f}, {0.32168f, 0.33767f}};
+}
+
 } // namespace
 
 void writeExr(const MapImage& map, const std::filesystem::path& path) {
@@ -31,9 +36,11 @@ void writeExr(const MapImage& map, const std::filesystem::path& path) {
     const std::size_t sampleBytes = isHalf ? sizeof(Imath::half) : sizeof(float);
     Imf::Header header(map.size, map.size);
     header.compression() = Imf::ZIP_COMPRESSION;
-    header.insert("patina_colour_space", Imf::StringAttribute(map.isColour ? "lin_rec709" : "data"));
+    const bool isAcescg = map.colourSpace == ColourSpace::acescg;
+    header.insert("patina_colour_space",
+                  Imf::StringAttribute(!map.isColour ? "data" : isAcescg ? "acescg" : "lin_rec709"));
     if (map.isColour)
-        Imf::addChromaticities(header, Imf::Chromaticities());
+        Imf::addChromaticities(header, isAcescg ? acescgChromaticities() : Imf::Chromaticities());
     for (const auto& [name, value] : map.texts)
         header.insert(name.c_str(), Imf::StringAttribute(value));
     for (const auto& [name, value] : map.numbers)
@@ -101,6 +108,9 @@ MapImage readExr(const std::filesystem::path& path) {
                 map.numbers.emplace_back(item.name(), number->value());
             if (std::string(item.name()) == "chromaticities")
                 map.isColour = true;
+            const auto* text = dynamic_cast<const Imf::StringAttribute*>(&item.attribute());
+            if (text && std::string(item.name()) == "patina_colour_space" && text->value() == "acescg")
+                map.colourSpace = ColourSpace::acescg;
         }
     } catch (const Error&) {
         throw;

@@ -1,6 +1,8 @@
 #pragma once
 // Maps as OpenEXR files: one map per file, channels Y or R, G, B, lossless.
 
+#include "optics/colour.h"
+
 #include <Imath/half.h>
 
 #include <filesystem>
@@ -16,7 +18,8 @@ struct MapImage {
     std::string name; ///< the file's stem: "displacement", "thickness_01_tarnish_1"
     int size = 0;
     int channels = 1;      ///< 1 (Y) or 3 (R, G, B)
-    bool isColour = false; ///< linear Rec.709 light; otherwise data
+    bool isColour = false; ///< linear light of `colourSpace`; otherwise data
+    ColourSpace colourSpace = ColourSpace::rec709;
     std::vector<float> floats;
     std::vector<Imath::half> halves;
     std::vector<std::pair<std::string, std::string>> texts; ///< attributes of the file

@@ -28,8 +28,8 @@ std::vector<float> fractionsOn(int k, const Workpiece& work, double fraction, co
         for (auto voxel = base[n]->cbeginValueOn(); voxel; ++voxel, ++at) {
             const auto foot = feet.find(k, voxel.getCoord(), at);
             if (foot.under.triangle >= 0)
-                fractions[at] = static_cast<float>(
-                    fraction * clampedFactor(map, binding.surface(), foot.under, clamped[n]));
+                fractions[at] =
+                    static_cast<float>(fraction * clampedFactor(map, binding.surface(), foot.under, clamped[n]));
         }
     });
     progress.checkpoint();
@@ -67,8 +67,8 @@ OperationReport convertLayers(Workpiece& work, const std::string& from, const st
             continue;
         volume.splitLayer(k, to);
         const NestGrids& grids = volume.grids();
-        const auto below = leavesOf(k == 1 ? std::as_const(grids.floor().tree())
-                                           : std::as_const(grids.interfaces[k - 2]->tree()));
+        const auto below =
+            leavesOf(k == 1 ? std::as_const(grids.floor().tree()) : std::as_const(grids.interfaces[k - 2]->tree()));
         const auto outer = leavesOf(std::as_const(grids.interfaces[k]->tree()));
         const auto split = leavesOf(volume.grids().interfaces[k - 1]->tree());
         tbb::parallel_for(std::size_t(0), split.size(), [&](std::size_t n) {

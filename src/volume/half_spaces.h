@@ -16,9 +16,10 @@ struct HalfSpaces {
     std::array<float, most> offset;
     int count = 0;
 
-    /// The dual active-set method (Goldfarb and Idnani 1983) in three dimensions: from x, the plane that is lacked most is
-    /// stepped onto, along what the planes that hold already leave free; one whose push would turn into a pull lets go.
-    /// At most three hold at once, and it mostly ends after one or two steps, also where planes are nearly parallel.
+    /// The dual active-set method (Goldfarb and Idnani 1983) in three dimensions: from x, the plane that is lacked most
+    /// is stepped onto, along what the planes that hold already leave free; one whose push would turn into a pull lets
+    /// go. At most three hold at once, and it mostly ends after one or two steps, also where planes are nearly
+    /// parallel.
     Imath::V3f closestTo(const Imath::V3f& x) const {
         constexpr double enough = 1e-4, parallel = 1e-4;
         Imath::V3d p(x), held[3];

@@ -26,7 +26,9 @@ struct Base {
 
 // A sheet of 60 voxels; what is measured is off its edges. The map runs across the lattice.
 Base reliefBase(const std::string& name, test::Height height, double beside = 0.0) {
-    const auto factor = [](const Imath::V3d& p) { return 0.5 + 0.5 * std::sin(2.0 * M_PI * (0.96 * p.y + 0.28 * p.x) / 30.0); };
+    const auto factor = [](const Imath::V3d& p) {
+        return 0.5 + 0.5 * std::sin(2.0 * M_PI * (0.96 * p.y + 0.28 * p.x) / 30.0);
+    };
     const auto places = [height, beside, factor] {
         constexpr int count = 150;
         std::vector<Place> all;

@@ -134,6 +134,7 @@ void addProbeCommand(CLI::App& app, Options& options, Action& action) {
     command->add_flag("--csv", arguments->csv, "One line per point, with a head line")->group("Points");
     addGeneralOptions(*command, options);
     addModelOptions(*command, options);
+    addOpticsOptions(*command, options);
     command->callback([&options, &action, arguments] {
         action = [&options, arguments](Console& console) { probeVolume(*arguments, options, console); };
     });

@@ -39,6 +39,7 @@ void addRenderCommand(CLI::App& app, Options& options, Action& action) {
     addGeneralOptions(*command, options);
     addOutputOption(*command, options);
     addModelOptions(*command, options);
+    addOpticsOptions(*command, options);
     addPictureOptions(*command, options);
     command->callback([&options, &action, arguments] {
         action = [&options, arguments](Console& console) { renderVolume(*arguments, options, console); };

@@ -22,6 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// There are many of them, and they are looked at side by side.
+constexpr PictureDefaults framePictures{480, 24};
+
 struct Arguments {
     std::string model;
     std::string environment;
@@ -164,10 +167,11 @@ void addWeatherCommand(CLI::App& app, Options& options, Action& action) {
     addModelOptions(*command, options);
     addVolumeOptions(*command, options);
     addMapOptions(*command, options);
-    addPictureOptions(*command, options);
+    addPictureOptions(*command, options, framePictures);
     addRunOptions(*command, options);
     command->add_flag("--resume", options.resume, "Go on with an interrupted series in the same folder")->group("Run");
-    command->callback([&options, &action, arguments] {
+    command->callback([&options, &action, arguments, command] {
+        takeDefaults(*command, framePictures, options);
         action = [&options, arguments](Console& console) { weather(*arguments, options, console); };
     });
 }

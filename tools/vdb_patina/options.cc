@@ -112,16 +112,28 @@ void addVolumeOptions(CLI::App& app, Options& options) {
 
 void addRegionOptions(CLI::App& app, Options& options) {
     const std::string group = "Close-up";
-    auto* box = app.add_option("--region", options.region,
-                               "A box of the model alone, two opposite corners in scene units; --voxels is along its side")
-                    ->type_name("X0,Y0,Z0,X1,Y1,Z1")
-                    ->group(group);
+    auto* box =
+        app.add_option("--region", options.region,
+                       "A box of the model alone, two opposite corners in scene units; --voxels is along its side")
+            ->type_name("X0,Y0,Z0,X1,Y1,Z1")
+            ->group(group);
     app.add_option("--region-at", options.regionAt, "The same as a cube: its middle and the length of its sides")
         ->excludes(box)
         ->type_name("X,Y,Z,SIZE")
         ->group(group);
     app.add_option("--context", options.context, "A .vdb of the whole model: its fields hold for the region")
         ->type_name("WHOLE.vdb")
+        ->group(group);
+}
+
+void addOpticsOptions(CLI::App& app, Options& options) {
+    const std::string group = "Optics";
+    app.add_option("--optics", options.optics, "conserving (default) or paper (its section 4.3 to the letter)")
+        ->check(oneOf({"conserving", "paper"}))
+        ->type_name("MODEL")
+        ->group(group);
+    app.add_flag("--thin-film", options.thinFilm,
+                 "Interference colours where an oxide on the metal is thinner than 150 nm: its first weeks")
         ->group(group);
 }
 
@@ -134,19 +146,21 @@ void addMapOptions(CLI::App& app, Options& options) {
     app.add_flag("--keep-exaggeration", options.keepExaggeration, "Displacement as drawn in the volume, not real")
         ->group(group);
     app.add_flag("--material-id", options.materialId, "Also bake material_id.exr")->group(group);
-    app.add_option("--optics", options.optics, "conserving (default) or paper (its section 4.3 to the letter)")
-        ->check(oneOf({"conserving", "paper"}))
-        ->type_name("MODEL")
+    addOpticsOptions(app, options);
+    app.add_option("--colour-space", options.colourSpace, "Of the colour maps: rec709 (default) or acescg; linear")
+        ->check(oneOf({"rec709", "acescg"}))
+        ->type_name("SPACE")
         ->group(group);
 }
 
-void addPictureOptions(CLI::App& app, Options& options) {
+void addPictureOptions(CLI::App& app, Options& options, const PictureDefaults& defaults) {
     const std::string group = "Picture";
-    app.add_option("--picture", options.pictureSize, "Pixels along its longer side; 0: no picture (default 640)")
+    app.add_option("--picture", options.pictureSize,
+                   fmt::format("Pixels along its longer side; 0: no picture (default {})", defaults.size))
         ->check(wholeNumberWithin(0, 16384))
         ->type_name("P")
         ->group(group);
-    app.add_option("--samples", options.samples, "Paths per pixel (default 32)")
+    app.add_option("--samples", options.samples, fmt::format("Paths per pixel (default {})", defaults.samples))
         ->check(wholeNumberWithin(1, 65536))
         ->type_name("N")
         ->group(group);
@@ -158,6 +172,13 @@ void addPictureOptions(CLI::App& app, Options& options) {
         ->check(numberWithin(-89.0, 89.0))
         ->type_name("DEG")
         ->group(group);
+}
+
+void takeDefaults(const CLI::App& app, const PictureDefaults& defaults, Options& options) {
+    if (app.count("--picture") == 0)
+        options.pictureSize = defaults.size;
+    if (app.count("--samples") == 0)
+        options.samples = defaults.samples;
 }
 
 void addRunOptions(CLI::App& app, Options& options) {

