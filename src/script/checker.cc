@@ -196,6 +196,7 @@ class Checker {
             return;
         auto made = std::make_shared<Curve>();
         made->name = name.text;
+        made->isSmooth = syntax.smooth;
         bool good = true;
         for (std::size_t i = 0; i < syntax.values.size(); ++i)
             good = curvePoint(syntax.values[i], i == 0, *made) && good;

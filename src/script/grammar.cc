@@ -70,6 +70,8 @@ class TreeReader {
             out.values.push_back(group(node));
         else if (node.is_type<rules::areaMark>())
             out.area = true;
+        else if (node.is_type<rules::smoothMark>())
+            out.smooth = true;
         else if (isClause(node))
             out.clauses.push_back(clause(node));
     }

@@ -178,8 +178,9 @@ struct offsetStatement : seq<offsetWord, blanks, wantMaterial, blanks, wantRadiu
 struct renderStatement : seq<renderWord, blanks, wantTarget, blanks> {};
 struct letStatement : seq<letWord, blanks, wantDeclared, blanks, wantEquals, blanks, wantValue> {};
 struct paramStatement : seq<paramWord, blanks, wantDeclared, blanks, wantEquals, blanks, wantValue> {};
+struct smoothMark : smoothWord {};
 struct curveStatement : seq<curveWord, blanks, wantDeclared, blanks, wantEquals, blanks, wantPoint, blanks, opt<comma>,
-                            star<point, blanks, opt<comma>>> {};
+                            star<point, blanks, opt<comma>>, opt<smoothMark, blanks>> {};
 struct seedStatement : seq<seedWord, blanks, wantCount, blanks> {};
 struct repeatStatement : seq<repeatWord, blanks, wantCount, blanks> {};
 
@@ -263,8 +264,8 @@ using selector =
                                    name, functionName, numberText, attachedUnit, unitWord, quotedText, quoted, quantity,
                                    rateName, stepDigits, totalDigits, growthShort, argumentName, argument, call, group,
                                    ofFull, sign, factor, productOperator, product, sumOperator, sum, material, declared,
-                                   label, target, fileName, value, map, point, areaMark, asClause, byClause, andClause,
-                                   aboveClause, windowClause, ofClause, tangentClause, globalClause>>;
+                                   label, target, fileName, value, map, point, areaMark, smoothMark, asClause, byClause,
+                                   andClause, aboveClause, windowClause, ofClause, tangentClause, globalClause>>;
 
 } // namespace rules
 

@@ -20,11 +20,13 @@ struct ExposureRequest;
 struct GrowthCall;
 
 /// `curve NAME = (0, 0) (5, 1.2) (30, 2);`: straight lines between points sorted by their first number, held constant
-/// before the first and after the last.
+/// before the first and after the last. With `smooth` behind the points, the monotone cubic through them: it has a
+/// continuous slope and never leaves the range of the two points it is between.
 struct Curve {
     std::string name;
     std::vector<std::pair<double, double>> points; ///< (years, value); values in µm where `isLength`
     bool isLength = false;
+    bool isSmooth = false;
 
     double value(double x) const;
 };

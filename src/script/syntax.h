@@ -60,7 +60,8 @@ struct SyntaxStatement {
     std::vector<SyntaxWord> names;        ///< metals, materials, declared names, files, in order
     std::vector<SyntaxExpression> values; ///< thickness, height, value, count; curves: their points as tuples
     std::optional<SyntaxExpression> map;
-    bool area = false; ///< polish area
+    bool area = false;   ///< polish area
+    bool smooth = false; ///< a curve's
     std::vector<SyntaxClause> clauses;
     std::vector<SyntaxStatement> body; ///< of repeat
 };

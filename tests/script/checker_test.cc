@@ -377,6 +377,26 @@ TEST(Checker, drawsCurvesWithStraightLines) {
                 HasSubstr("3:11: the curve 'c' has one argument"));
 }
 
+TEST(Checker, smoothCurvesPassTheirPointsAndNeverOvershoot) {
+    const Program program =
+        readScript("new copper\ncurve c = (0, 0) (5, 1) (6, 4) (20, 4) (30, 5) smooth\ncoat soot c(5)");
+    ASSERT_EQ(program.curves.size(), 1u);
+    const Curve& curve = program.curves.front();
+    for (const auto& [year, value] : curve.points)
+        EXPECT_NEAR(curve.value(year), value, 1e-12) << year;
+    double last = curve.value(-1.0), lastSlope = 0.0;
+    const double step = 0.01;
+    for (double year = -1.0; year < 31.0; year += step) {
+        const double here = curve.value(year + step), slope = (here - last) / step;
+        EXPECT_GE(here, last - 1e-12) << year;
+        EXPECT_NEAR(slope, lastSlope, 0.25) << year; // a kink would be 2.8, the steepest piece bends by 17
+        last = here;
+        lastSlope = slope;
+    }
+    EXPECT_DOUBLE_EQ(curve.value(12.0), 4.0);
+    EXPECT_NE(curve.value(2.0), 0.4);
+}
+
 TEST(Checker, unrollsRepeatWithItsStep) {
     const Program program = readScript("new copper\n"
                                        "repeat 3 {\n"
