@@ -38,7 +38,8 @@ void findPierced(const SurfaceMesh& surface, const RayScene& scene, MeshReport& 
         for (int c = 0; c < 3; ++c) {
             const V3f a = surface.positions[corners[c]], b = surface.positions[corners[(c + 1) % 3]];
             const auto hit = scene.intersect(a, b - a, 1e-3f, 1.f - 1e-3f);
-            if (!hit || hit->point.triangle == static_cast<int>(t))
+            // A patch does not pierce itself where it was only diced: rays graze its own triangles.
+            if (!hit || surface.triangleFaces[hit->point.triangle] == surface.triangleFaces[t])
                 continue;
             // Neighbours do not count, whether they share vertices or only their places.
             const V3i& far = surface.triangles[hit->point.triangle];
