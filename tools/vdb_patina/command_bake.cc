@@ -22,7 +22,8 @@ void bakeVolume(const Arguments& arguments, const Options& options, Console& con
     const auto folder = outputFolder(options, name);
     std::vector<std::string> outputs;
     const StackOptics optics = opticsOf(input.volume, input.materials, options);
-    const BakeSummary summary = writeMaps(input.volume, input.model, optics, options, folder, outputs, console);
+    const BakeSummary summary =
+        writeMaps(input.volume, input.model, optics, options, folder, outputs, console, arguments.volume);
     writeMeshes(input.model, name, folder, outputs, console);
     console.result(fmt::format("{}: {} files, displacement at most {:.4g} scene units", folder.string(), outputs.size(),
                                summary.maxDisplacement));

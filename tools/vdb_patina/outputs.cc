@@ -1,6 +1,8 @@
 #include "outputs.h"
 
 #include "base/atomic_file.h"
+#include "export/materialx_file.h"
+#include "export/usd_file.h"
 #include "render/camera.h"
 #include "render/displace.h"
 #include "render/film.h"
@@ -8,6 +10,7 @@
 #include "render/path_tracer.h"
 #include "render/stack_shader.h"
 #include "surface/mesh_file.h"
+#include "volume/vdb_file.h"
 
 #include <fmt/format.h>
 
@@ -84,8 +87,71 @@ static void toModelUnits(MapSet& maps, double magnification) {
     maps.summary.maxDisplacement = static_cast<float>(maps.summary.maxDisplacement / magnification);
 }
 
+// What the surface was made by (surface/limit_surface.h), as USD calls it.
+static const char* schemeOf(const Model& model, const Options& options) {
+    if (model.region || !model.surface.note.empty() || options.scheme == "none")
+        return "none";
+    if (options.scheme == "loop")
+        return "loop";
+    const bool polygons =
+        std::any_of(model.mesh.faceSizes.begin(), model.mesh.faceSizes.end(), [](int size) { return size > 3; });
+    return polygons || options.scheme == "catmull-clark" ? "catmullClark" : "none";
+}
+
+// The diced surface in the model's coordinates as a mesh.
+static Mesh dicedMesh(const Model& model) {
+    Mesh mesh;
+    for (const Imath::V3f& p : model.surface.positions)
+        mesh.positions.emplace_back(model.toModel(Imath::V3d(p)));
+    mesh.uvs = model.surface.uvs;
+    mesh.faceSizes.assign(model.surface.triangles.size(), 3);
+    for (std::size_t t = 0; t < model.surface.triangles.size(); ++t)
+        for (int corner = 0; corner < 3; ++corner) {
+            mesh.faceVertices.push_back(model.surface.triangles[t][corner]);
+            mesh.faceUvs.push_back(model.surface.triangleUvs[t][corner]);
+        }
+    return mesh;
+}
+
+static void writeScene(const LayerVolume& volume, const Model& model, const BakeSummary& summary,
+                       const Options& options, const std::string& name, const std::filesystem::path& volumeFile,
+                       const std::filesystem::path& folder, std::vector<std::string>& outputs, Console& console) {
+    const ProgressStage stage(console, "write scene");
+    UsdScene scene;
+    scene.name = name;
+    scene.scheme = schemeOf(model, options);
+    // The normals of a close-up are those of its dice.
+    const Mesh diced = model.region ? dicedMesh(model) : Mesh();
+    scene.mesh = model.region ? &diced : &model.mesh;
+    if (std::string(scene.scheme) == "none" && model.surface.normals.size() == scene.mesh->positions.size())
+        scene.normals = &model.surface.normals;
+    scene.metresPerUnit = volume.scale().metresPerUnit * model.magnification();
+    scene.zUp = options.up == UpAxis::z;
+    scene.maps.baked = true;
+    scene.maps.colourSpace = options.colourSpace == "acescg" ? ColourSpace::acescg : ColourSpace::rec709;
+    scene.maps.maxDisplacement = summary.maxDisplacement;
+    // Paths hold where the folder is moved together with the volume.
+    std::error_code failure;
+    const auto relative = std::filesystem::proximate(volumeFile, folder, failure);
+    scene.volumeFile = (failure ? volumeFile : relative).generic_string();
+    scene.volumeUnitsPerUnit = model.magnification();
+    for (const GridSummary& grid : summarizeGrids(volume)) {
+        const bool levelSet = grid.gridClass == "level set";
+        if (grid.name != "surface" && (grid.type == "float" || grid.type == "int32"))
+            scene.fields.push_back({grid.name, grid.type == "int32", levelSet});
+    }
+    scene.fields.push_back({"surface", false, true}); // the last interface once more, under its common name
+    scene.documentation =
+        fmt::format("vdb-patina {}: {} on {}", PATINA_VERSION, volume.provenance.scriptName, volume.provenance.model);
+    writeUsd(scene, folder / (name + ".usda"));
+    outputs.push_back(name + ".usda");
+    writeMaterialX(name, scene.maps, folder / (name + ".mtlx"));
+    outputs.push_back(name + ".mtlx");
+}
+
 BakeSummary writeMaps(const LayerVolume& volume, const Model& model, const StackOptics& optics, const Options& options,
-                      const std::filesystem::path& folder, std::vector<std::string>& outputs, Console& console) {
+                      const std::filesystem::path& folder, std::vector<std::string>& outputs, Console& console,
+                      const std::filesystem::path& volumeFile) {
     BakeOptions bakeOptions;
     bakeOptions.resolution = options.resolution;
     bakeOptions.keepExaggeration = options.keepExaggeration;
@@ -96,16 +162,21 @@ BakeSummary writeMaps(const LayerVolume& volume, const Model& model, const Stack
         maps = bake(volume, model.surface, optics, bakeOptions, console);
     }
     toModelUnits(maps, model.magnification());
-    const ProgressStage stage(console, "write maps");
-    for (MapImage& map : maps.maps) {
-        console.checkpoint();
-        map.texts.emplace_back("patina_program", "vdb-patina " PATINA_VERSION);
-        map.texts.emplace_back("patina_script", volume.provenance.scriptName);
-        map.texts.emplace_back("patina_model", volume.provenance.model);
-        writeExr(map, folder / (map.name + ".exr"));
-        outputs.push_back(map.name + ".exr");
-        map = {}; // written: its memory is free for the rest
+    {
+        const ProgressStage stage(console, "write maps");
+        for (MapImage& map : maps.maps) {
+            console.checkpoint();
+            map.texts.emplace_back("patina_program", "vdb-patina " PATINA_VERSION);
+            map.texts.emplace_back("patina_script", volume.provenance.scriptName);
+            map.texts.emplace_back("patina_model", volume.provenance.model);
+            writeExr(map, folder / (map.name + ".exr"));
+            outputs.push_back(map.name + ".exr");
+            map = {}; // written: its memory is free for the rest
+        }
     }
+    const std::string name = volumeFile.empty() ? volume.provenance.scriptName : volumeFile.stem().string();
+    writeScene(volume, model, maps.summary, options, name, volumeFile.empty() ? folder / (name + ".vdb") : volumeFile,
+               folder, outputs, console);
     return maps.summary;
 }
 

@@ -21,9 +21,12 @@ StackOptics opticsOf(const LayerVolume& volume, const MaterialLibrary& materials
 /// The folder for results: -o, or one named after the result. Made, and checked for being writable.
 std::filesystem::path outputFolder(const Options& options, const std::string& name);
 
-/// Bakes and writes all maps. \return their summary; file names are appended to `outputs`
+/// Bakes and writes all maps, and NAME.usda and NAME.mtlx that read them.
+/// \param volumeFile  where the volume lies, and what names the scene; empty: NAME.vdb in the folder, NAME the script's
+/// \return their summary; file names are appended to `outputs`
 BakeSummary writeMaps(const LayerVolume& volume, const Model& model, const StackOptics& optics, const Options& options,
-                      const std::filesystem::path& folder, std::vector<std::string>& outputs, Console& console);
+                      const std::filesystem::path& folder, std::vector<std::string>& outputs, Console& console,
+                      const std::filesystem::path& volumeFile = {});
 
 /// NAME.obj (control mesh) and NAME_limit.ply.
 void writeMeshes(const Model& model, const std::string& name, const std::filesystem::path& folder,
