@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 namespace patina {
 
@@ -123,6 +124,7 @@ bool SurfaceBinding::findVisible(const LayerVolume& volume) {
     if (scene_ && visible == visible_ && pieces.size() == pieces_.size() &&
         std::equal(pieces.begin(), pieces.end(), pieces_.begin(), samePieces))
         return false;
+    leafVoxels_.clear(); // closest points of another surface
     visible_ = std::move(visible);
     pieces_ = std::move(pieces);
     scene_.emplace(positions.empty() ? closed_.positions : positions, triangles);
@@ -132,8 +134,15 @@ bool SurfaceBinding::findVisible(const LayerVolume& volume) {
 void SurfaceBinding::countVoxels(const LayerVolume& volume) {
     const auto leaves = leavesOf(std::as_const(volume.grids().base->tree()));
     leafStart_.resize(leaves.size() + 1);
+    leafVoxels_.clear();
+    leafVoxels_.reserve(leaves.size());
     std::size_t total = 0;
     for (std::size_t n = 0; n < leaves.size(); ++n) {
+        const openvdb::Coord& origin = leaves[n]->origin();
+        LeafVoxels& voxels = leafVoxels_.emplace_back();
+        voxels.origin = {origin.x(), origin.y(), origin.z()};
+        for (openvdb::Index word = 0; word < 8; ++word)
+            voxels.active[word] = leaves[n]->valueMask().getWord<std::uint64_t>(word);
         leafStart_[n] = total;
         total += leaves[n]->onVoxelCount();
     }
@@ -145,11 +154,41 @@ void SurfaceBinding::rebind(const LayerVolume& volume) {
     const double voxelSize = volume.scale().voxelSize;
     // Metal that only hidden faces are near to has no place in the band: refineBase() takes it out.
     const auto deepest = static_cast<float>((volume.grids().interiorBand + 0.6) * voxelSize);
+    // A closest point is a function of the voxel's place alone (see RayScene::closest on ties): those of voxels that
+    // were there stay.
+    const auto oldVoxels = std::move(leafVoxels_);
+    const auto oldStart = std::move(leafStart_);
+    const auto oldPoints = std::move(points_);
+    std::unordered_map<openvdb::Coord, std::size_t> oldLeaves;
+    for (std::size_t n = 0; n < oldVoxels.size(); ++n)
+        oldLeaves.emplace(openvdb::Coord(oldVoxels[n].origin.data()), n);
     countVoxels(volume);
     points_.assign(leafStart_.back(), SurfacePoint());
     tbb::parallel_for(std::size_t(0), leaves.size(), [&](std::size_t n) {
         std::size_t at = leafStart_[n];
+        const auto old = oldLeaves.find(leaves[n]->origin());
+        // Where the points of the old leaf's words of voxels begin.
+        const LeafVoxels* const before = old == oldLeaves.end() ? nullptr : &oldVoxels[old->second];
+        std::size_t wordStart[8];
+        if (before) {
+            std::size_t start = oldStart[old->second];
+            for (int word = 0; word < 8; ++word) {
+                wordStart[word] = start;
+                start += openvdb::util::CountOn(before->active[word]);
+            }
+        }
         for (auto voxel = leaves[n]->cbeginValueOn(); voxel; ++voxel, ++at) {
+            const openvdb::Index word = voxel.pos() >> 6;
+            const std::uint64_t bit = std::uint64_t(1) << (voxel.pos() & 63);
+            // What had none may have one in a deeper band.
+            if (before && before->active[word] & bit) {
+                const SurfacePoint& point =
+                    oldPoints[wordStart[word] + openvdb::util::CountOn(before->active[word] & (bit - 1))];
+                if (point.triangle >= 0) {
+                    points_[at] = point;
+                    continue;
+                }
+            }
             const openvdb::Coord c = voxel.getCoord();
             // phi_0 is the distance to the model, but for the voxeliser's error.
             const auto radius = static_cast<float>(1.02 * std::abs(*voxel) + 0.1 * voxelSize);

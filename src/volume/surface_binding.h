@@ -5,6 +5,8 @@
 #include "volume/layer_volume.h"
 #include "volume/sheet_back.h"
 
+#include <array>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -19,7 +21,7 @@ class SurfaceBinding {
     /// `closed` must be what the volume was voxelised from and `surface`, which must outlive this, what it was made of.
     SurfaceBinding(const LayerVolume& volume, const SurfaceMesh& surface, ClosedSurface closed);
 
-    /// Recomputes the closest points, needed after the band has grown.
+    /// Finds the closest points of the voxels that have come to the band since; needed after it has grown.
     void rebind(const LayerVolume& volume);
 
     /// Gives phi_0 the exact distances to the model in the whole band, signs kept: the voxeliser's own are exact next
@@ -57,6 +59,12 @@ class SurfaceBinding {
     std::vector<Piece> pieces_;     ///< of the last visible ones
     std::optional<RayScene> scene_; ///< of the visible triangles
     std::vector<std::size_t> leafStart_;
+    /// The active voxels of a leaf, bit by bit.
+    struct LeafVoxels {
+        std::array<std::int32_t, 3> origin;
+        std::array<std::uint64_t, 8> active;
+    };
+    std::vector<LeafVoxels> leafVoxels_; ///< whose points these are
     std::vector<SurfacePoint> points_;
 };
 
