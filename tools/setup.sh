@@ -2,7 +2,8 @@
 # Installs the Debian packages that building and testing need. Does nothing where all are there.
 #
 #   tools/setup.sh              what building and the default tests need
-#   tools/setup.sh --clients    also the programs that read our files in the tests labelled clients (Blender)
+#   tools/setup.sh --clients    also what reads our files in the tests labelled clients: Blender, a GLSL compiler, and
+#                               USD and MaterialX for Python in the virtual environment build/clients-venv
 set -euo pipefail
 
 packages=(
@@ -16,9 +17,10 @@ packages=(
   fonts-dejavu-core python3
 )
 
+clients=no
 for option in "$@"; do
   case "$option" in
-    --clients) packages+=(blender) ;;
+    --clients) packages+=(blender glslang-tools python3-venv); clients=yes ;;
     *) echo "setup.sh: unknown option '$option' (--clients)" >&2; exit 2 ;;
   esac
 done
@@ -27,13 +29,25 @@ missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing+=("$package")
 done
-[ "${#missing[@]}" = 0 ] && exit 0
-
-as_root=()
-if [ "$(id -u)" != 0 ]; then
-  command -v sudo >/dev/null || { echo "setup: these packages are missing: ${missing[*]}; install them as root" >&2; exit 1; }
-  as_root=(sudo)
+if [ "${#missing[@]}" != 0 ]; then
+  as_root=()
+  if [ "$(id -u)" != 0 ]; then
+    command -v sudo >/dev/null || { echo "setup: these packages are missing: ${missing[*]}; install them as root" >&2; exit 1; }
+    as_root=(sudo)
+  fi
+  echo "setup: installing ${missing[*]}" >&2
+  "${as_root[@]}" apt-get update -qq >&2
+  DEBIAN_FRONTEND=noninteractive "${as_root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2
 fi
-echo "setup: installing ${missing[*]}" >&2
-"${as_root[@]}" apt-get update -qq >&2
-DEBIAN_FRONTEND=noninteractive "${as_root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2
+
+# Python packages, where the list has changed since they were installed. Debian's own python3: another one on PATH may go away.
+if [ "$clients" = yes ]; then
+  root="$(cd "$(dirname "$0")/.." && pwd)"
+  list="$root/tests/clients/requirements.txt" venv="$root/build/clients-venv"
+  if ! cmp -s "$list" "$venv/requirements.txt"; then
+    echo "setup: installing $(grep -v '^#' "$list" | tr '\n' ' ')" >&2
+    /usr/bin/python3 -m venv --clear "$venv"
+    "$venv/bin/python3" -m pip install -q --disable-pip-version-check -r "$list" >&2
+    cp "$list" "$venv/requirements.txt"
+  fi
+fi
