@@ -1,7 +1,10 @@
 #include "export/bake.h"
 
+#include "export/outer_surface.h"
 #include "export/texel_map.h"
+#include "operators/fields/field_grid.h"
 #include "optics/colour.h"
+#include "volume/nest_grids.h"
 #include "volume/stack_probe.h"
 
 #include <fmt/format.h>
@@ -17,8 +20,8 @@ namespace {
 
 // The maps while they are being baked, in the order of the files.
 struct Planes {
-    MapImage displacement, diffuse, baseColour, metallic, roughness, normal, materialId;
-    std::vector<MapImage> lobes, thickness, coverage;
+    MapImage displacement, diffuse, baseColour, metallic, roughness, normal, materialId, foldMask, vectors;
+    std::vector<MapImage> lobes, thickness, coverage, fields;
 };
 
 MapImage plane(const std::string& name, int size, int channels, bool isColour, bool isFloat) {
@@ -65,6 +68,13 @@ Planes makePlanes(const LayerVolume& volume, const BakeOptions& options) {
     }
     if (options.materialId)
         planes.materialId = plane("material_id", size, 1, false, true);
+    if (options.foldMask)
+        planes.foldMask = plane("fold_mask", size, 1, false, false);
+    if (options.vectorDisplacement)
+        planes.vectors = plane("vector_displacement", size, 3, false, true);
+    if (options.fields)
+        for (const auto& field : volume.grids().fields)
+            planes.fields.push_back(plane("field_" + field.first, size, 1, false, false));
     return planes;
 }
 
@@ -110,6 +120,16 @@ void bakeNormals(const SurfaceMesh& surface, const TexelMap& texels, Planes& pla
     });
 }
 
+// From the base to the surface above. Layers thinner than half a voxel go straight up.
+Imath::V3d vectorOf(const OuterSurface& outer, const StackProbe::Reading& reading, const Imath::V3d& position,
+                    const Imath::V3d& normal, double voxelSize) {
+    if (!reading.found || reading.projected || reading.height < 0.5 * voxelSize)
+        return normal * reading.height;
+    const Imath::V3d base = position + normal * reading.baseOffset;
+    const auto end = outer.above(base);
+    return end ? *end - base : normal * reading.height;
+}
+
 void fillGutter(const TexelMap& texels, MapImage& map) {
     for (const auto& [to, from] : texels.gutter)
         for (int c = 0; c < map.channels; ++c) {
@@ -122,7 +142,7 @@ void fillGutter(const TexelMap& texels, MapImage& map) {
 
 // Per row, then over the rows in order: the sums do not depend on the threads.
 struct RowSums {
-    std::size_t covered = 0, unreadable = 0, green = 0;
+    std::size_t covered = 0, unreadable = 0, green = 0, foldsAsked = 0, folds = 0;
     float maxDisplacement = 0.f;
     Imath::V3d colour{0.0};
 };
@@ -149,6 +169,12 @@ MapSet bake(const LayerVolume& volume, const SurfaceMesh& surface, const StackOp
     for (const std::string& layer : volume.layers())
         ids.push_back(static_cast<float>(volume.findMaterialId(layer)));
 
+    const OuterSurface outer(volume);
+    std::vector<ThicknessMapPtr> fields;
+    if (options.fields)
+        for (const auto& field : volume.grids().fields)
+            fields.push_back(makeFieldMap(volume, field.first));
+
     Planes planes = makePlanes(volume, options);
     std::vector<RowSums> rows(size);
     tbb::parallel_for(0, size, [&](int y) {
@@ -164,7 +190,8 @@ MapSet bake(const LayerVolume& volume, const SurfaceMesh& surface, const StackOp
             if (point.triangle < 0)
                 continue;
             ++row.covered;
-            const auto reading = probe.read(positionAt(surface, point), normalAt(surface, point), thickness.data());
+            const Imath::V3d position = positionAt(surface, point), normal = normalAt(surface, point);
+            const auto reading = probe.read(position, normal, thickness.data());
             if (!reading.found)
                 ++row.unreadable;
             int visible = 0;
@@ -181,6 +208,23 @@ MapSet bake(const LayerVolume& volume, const SurfaceMesh& surface, const StackOp
             const float height = static_cast<float>(reading.height * displacementScale);
             put(planes.displacement, at, height);
             row.maxDisplacement = std::max(row.maxDisplacement, std::abs(height));
+            bool folds = false;
+            // Without the mask one texel of sixteen tells the fraction.
+            if (reading.found && !reading.projected && (options.foldMask || (x % 4 == 0 && y % 4 == 0))) {
+                const Imath::V3d floor = position + normal * (reading.baseOffset + reading.metalHeight);
+                folds = outer.foldsOver(floor, normal);
+                ++row.foldsAsked;
+                row.folds += folds;
+            }
+            if (options.foldMask)
+                put(planes.foldMask, at, folds ? 1.f : 0.f);
+            if (options.vectorDisplacement) {
+                const Imath::V3d vector = vectorOf(outer, reading, position, normal, volume.scale().voxelSize);
+                put(planes.vectors, at, Imath::V3f(vector * displacementScale));
+            }
+            for (std::size_t f = 0; f < fields.size(); ++f)
+                put(planes.fields[f], at,
+                    static_cast<float>(fields[f]->value({position, normal, point.triangle, point.u, point.v})));
 
             optics.evaluate(thicknessUm.data(), look);
             put(planes.diffuse, at, look.diffuse);
@@ -204,6 +248,8 @@ MapSet bake(const LayerVolume& volume, const SurfaceMesh& surface, const StackOp
         sums.covered += row.covered;
         sums.unreadable += row.unreadable;
         sums.green += row.green;
+        sums.foldsAsked += row.foldsAsked;
+        sums.folds += row.folds;
         sums.colour += row.colour;
         sums.maxDisplacement = std::max(sums.maxDisplacement, row.maxDisplacement);
     }
@@ -211,11 +257,17 @@ MapSet bake(const LayerVolume& volume, const SurfaceMesh& surface, const StackOp
     set.summary.coveredFraction = static_cast<double>(sums.covered) / (static_cast<double>(size) * size);
     set.summary.unreadableFraction = static_cast<double>(sums.unreadable) / texelCount;
     set.summary.greenFraction = static_cast<double>(sums.green) / texelCount;
+    set.summary.foldFraction =
+        static_cast<double>(sums.folds) / static_cast<double>(std::max<std::size_t>(1, sums.foldsAsked));
     set.summary.meanColour = sums.colour / texelCount;
     set.summary.maxDisplacement = sums.maxDisplacement;
 
     planes.displacement.numbers.emplace_back("patina_max_displacement", sums.maxDisplacement);
     planes.displacement.texts.emplace_back("patina_units", "scene units along the normal, zero at the bare metal");
+    if (options.foldMask)
+        planes.foldMask.numbers.emplace_back("patina_fold_fraction", static_cast<float>(set.summary.foldFraction));
+    if (options.vectorDisplacement)
+        planes.vectors.texts.emplace_back("patina_units", "scene units, object space, from the bare metal");
     for (auto& thickness : planes.thickness)
         thickness.texts.emplace_back("patina_units", "real micrometres of solid");
     Appearance bare;
@@ -244,6 +296,12 @@ MapSet bake(const LayerVolume& volume, const SurfaceMesh& surface, const StackOp
     }
     if (options.materialId)
         take(planes.materialId);
+    if (options.foldMask)
+        take(planes.foldMask);
+    if (options.vectorDisplacement)
+        take(planes.vectors);
+    for (MapImage& field : planes.fields)
+        take(field);
     return set;
 }
 

@@ -146,6 +146,14 @@ void addMapOptions(CLI::App& app, Options& options) {
     app.add_flag("--keep-exaggeration", options.keepExaggeration, "Displacement as drawn in the volume, not real")
         ->group(group);
     app.add_flag("--material-id", options.materialId, "Also bake material_id.exr")->group(group);
+    app.add_flag("--fold-mask", options.foldMask, "Also bake fold_mask.exr: where a height map cannot follow")
+        ->group(group);
+    app.add_flag("--vector-displacement", options.vectorDisplacement,
+                 "Also bake vector_displacement.exr, object space: follows overhangs")
+        ->group(group);
+    app.add_flag("--fields", options.fields, "Also bake field_exposure.exr, … of every field in the volume")
+        ->group(group);
+    app.add_flag("--tx", options.tx, "Also write each map as tiled, mip-mapped .tx")->group(group);
     addOpticsOptions(app, options);
     app.add_option("--colour-space", options.colourSpace, "Of the colour maps: rec709 (default) or acescg; linear")
         ->check(oneOf({"rec709", "acescg"}))

@@ -45,6 +45,10 @@ struct Options {
     bool bakeMaps = true;
     bool keepExaggeration = false;
     bool materialId = false;
+    bool foldMask = false;
+    bool vectorDisplacement = false;
+    bool fields = false;
+    bool tx = false;
     std::string optics = "conserving";
     bool thinFilm = false;
     std::string colourSpace = "rec709"; ///< of the maps

@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "export/materialx_file.h"
+#include "export/texture_file.h"
 #include "export/usd_file.h"
 #include "render/camera.h"
 #include "render/displace.h"
@@ -156,12 +157,20 @@ BakeSummary writeMaps(const LayerVolume& volume, const Model& model, const Stack
     bakeOptions.resolution = options.resolution;
     bakeOptions.keepExaggeration = options.keepExaggeration;
     bakeOptions.materialId = options.materialId;
+    bakeOptions.foldMask = options.foldMask;
+    bakeOptions.vectorDisplacement = options.vectorDisplacement;
+    bakeOptions.fields = options.fields;
     MapSet maps;
     {
         const ProgressStage stage(console, "bake maps");
         maps = bake(volume, model.surface, optics, bakeOptions, console);
     }
     toModelUnits(maps, model.magnification());
+    // One texel in a thousand is what creases give that no renderer shows.
+    if (maps.summary.foldFraction > 1e-3 && !options.vectorDisplacement)
+        console.warning(fmt::format("on {:.2g} % of the surface the layers hang over: a height map draws walls there; "
+                                    "--vector-displacement follows them, --fold-mask shows where",
+                                    maps.summary.foldFraction * 100.0));
     {
         const ProgressStage stage(console, "write maps");
         for (MapImage& map : maps.maps) {
@@ -171,7 +180,12 @@ BakeSummary writeMaps(const LayerVolume& volume, const Model& model, const Stack
             map.texts.emplace_back("patina_model", volume.provenance.model);
             writeExr(map, folder / (map.name + ".exr"));
             outputs.push_back(map.name + ".exr");
+            const std::string stem = map.name;
             map = {}; // written: its memory is free for the rest
+            if (options.tx) {
+                writeTx(folder / (stem + ".exr"), folder / (stem + ".tx"));
+                outputs.push_back(stem + ".tx");
+            }
         }
     }
     const std::string name = volumeFile.empty() ? volume.provenance.scriptName : volumeFile.stem().string();
