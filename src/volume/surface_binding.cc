@@ -190,8 +190,8 @@ void SurfaceBinding::rebind(const LayerVolume& volume) {
                 }
             }
             const openvdb::Coord c = voxel.getCoord();
-            // phi_0 is the distance to the model, but for the voxeliser's error.
-            const auto radius = static_cast<float>(1.02 * std::abs(*voxel) + 0.1 * voxelSize);
+            // phi_0 is the distance to the model, or to a hidden face, or some thousandths too much.
+            const auto radius = static_cast<float>(1.0005 * std::abs(*voxel) + 0.02 * voxelSize);
             const Imath::V3d x = Imath::V3d(c.x(), c.y(), c.z()) * voxelSize;
             points_[at] = closest(x, radius, *voxel < 0.f ? deepest : std::numeric_limits<float>::infinity());
         }

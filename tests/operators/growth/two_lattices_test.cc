@@ -1,0 +1,307 @@
+// One script, one look: surface cells against voxels, coarse voxels against fine ones, every direction alike.
+
+#include "growth_test_shapes.h"
+#include "operators/coat.h"
+#include "operators/growth/growth_map.h"
+#include "operators/growth/voxel_growth.h"
+#include "optics/colour.h"
+#include "optics/layer_stack.h"
+#include "optics/material_library.h"
+#include "support/test_surfaces.h"
+#include "volume/nest_grids.h"
+#include "volume/stack_probe.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+
+namespace patina {
+namespace {
+
+VoxelGrowth growthOf(GrowthModel model, double step, double total) {
+    VoxelGrowth growth;
+    growth.options.model = model;
+    growth.options.step = step;
+    growth.options.total = total;
+    growth.seed = 3;
+    growth.label = "brochantite";
+    growth.cubes = true;
+    return growth;
+}
+
+VoxelGrowthReport growOn(test::Piece& piece, double thicknessUm, const VoxelGrowth& growth, double cell) {
+    auto work = piece.work();
+    return coatByVoxelGrowth(work, "brochantite", thicknessUm, surfaceLattice(piece.surface, cell), growth,
+                             piece.progress);
+}
+
+/// The same coat as a map of thickness.
+void coatByCells(test::Piece& piece, double thicknessUm, const VoxelGrowth& growth, double cell) {
+    auto work = piece.work();
+    const GrowthLattice lattice = surfaceLattice(piece.surface, cell);
+    const GrowthMap map(lattice, grow(lattice, growth.options, growth.seed, growth.label).factor, 1.0);
+    coat(work, "brochantite", thicknessUm, &map, piece.progress);
+}
+
+/// Means over the surface, a strip along its edge left out: thickness, and colour as CIE Lab.
+constexpr double plate = 96.0; // its side, voxels
+struct Look {
+    double um = 0.0;
+    Imath::V3d lab;
+};
+Look lookOf(const test::Piece& piece, const MaterialLibrary& materials) {
+    const StackProbe probe(*piece.volume);
+    const StackOptics optics({&materials.at("copper"), &materials.at("brochantite")});
+    Appearance look;
+    Look mean;
+    Imath::V3d colour(0.0);
+    const SurfaceMesh& mesh = piece.surface;
+    double count = 0.0;
+    for (const Imath::V3i& t : mesh.triangles) {
+        // Everywhere between voxel centres alike.
+        const Imath::V3d a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]);
+        const double u = std::fmod(0.7548776662 * count, 1.0), v = std::fmod(0.5698402910 * count, 1.0);
+        const double root = std::sqrt(u);
+        const Imath::V3d p = a * (1.0 - root) + b * (root * (1.0 - v)) + c * (root * v);
+        const Imath::V3d normal(mesh.normals[std::size_t(t.x)]);
+        if (!mesh.closed && (std::min(p.x, p.y) < 12.0 || std::max(p.x, p.y) > plate - 12.0))
+            continue;
+        double um = 0.0;
+        probe.read(p, normal, &um);
+        const auto thickness = static_cast<float>(um);
+        optics.evaluate(&thickness, look);
+        mean.um += um;
+        colour += Imath::V3d(look.baseColour);
+        count += 1.0;
+    }
+    mean.um /= count;
+    colour /= count;
+    mean.lab = labFromXyz(xyzFromLinearRec709(colour));
+    return mean;
+}
+
+TEST(TwoLattices, cellsAndVoxelsHaveTheSameMeanThicknessAndColour) {
+    const MaterialLibrary materials = MaterialLibrary::load(PATINA_SOURCE_DIR "/data");
+    for (const GrowthModel model : {GrowthModel::randomDeposition, GrowthModel::relaxation,
+                                    GrowthModel::ballisticDeposition, GrowthModel::directedPercolation}) {
+        const VoxelGrowth growth = growthOf(model, 10, 20);
+        const double thickness = 12.0;
+        const bool porous = model == GrowthModel::ballisticDeposition;
+        // Porous layers three times as high as they are thick have less solid over a ball, whose columns spread: a
+        // plate.
+        const auto body = [&] { return porous ? test::sheet(float(plate), 96) : test::sphere(24.f, 5); };
+        const auto cells = test::makePiece(body(), test::voxelScale(), 16.0);
+        const auto voxels = test::makePiece(body(), test::voxelScale(), porous ? 60.0 : 16.0);
+        coatByCells(*cells, thickness, growth, 1.0);
+        growOn(*voxels, thickness, growth, 1.0);
+        const Look a = lookOf(*cells, materials), b = lookOf(*voxels, materials);
+        const std::string name = growthModelName(model);
+        RecordProperty(name + "_thickness", std::to_string(b.um / a.um));
+        RecordProperty(name + "_colour", std::to_string(deltaE2000(a.lab, b.lab)));
+        EXPECT_NEAR(b.um / a.um, 1.0, 0.02) << name;
+        EXPECT_LT(deltaE2000(a.lab, b.lab), 2.0) << name;
+    }
+}
+
+TEST(TwoLattices, solidMassPerAreaIsTheSameInEveryDirection) {
+    for (const GrowthModel model :
+         {GrowthModel::randomDeposition, GrowthModel::relaxation, GrowthModel::ballisticDeposition}) {
+        constexpr double radius = 40.0;
+        const bool porous = model == GrowthModel::ballisticDeposition;
+        const auto piece = test::makePiece(test::sphere(float(radius), 5), test::voxelScale(), porous ? 40.0 : 14.0);
+        growOn(*piece, 10.0, growthOf(model, 20, 20), 1.0);
+        const StackProbe probe(*piece->volume);
+        double sum[3] = {}, count[3] = {};
+        const Imath::V3d kinds[3] = {{1, 0, 0}, Imath::V3d(1, 1, 0).normalized(), Imath::V3d(1, 1, 1).normalized()};
+        for (const Imath::V3i& t : piece->surface.triangles) {
+            const auto& at = piece->surface.positions;
+            const Imath::V3d n = Imath::V3d(at[t.x] + at[t.y] + at[t.z]).normalized();
+            Imath::V3d c(std::abs(n.x), std::abs(n.y), std::abs(n.z));
+            std::sort(&c.x, &c.x + 3, std::greater<>());
+            for (int k = 0; k < 3; ++k)
+                if (c.dot(kinds[k]) > 0.97) {
+                    double um = 0.0;
+                    probe.read(n * radius, n, &um);
+                    sum[k] += um;
+                    count[k] += 1.0;
+                }
+        }
+        const std::string name = growthModelName(model);
+        const double axis = sum[0] / count[0], edge = sum[1] / count[1] / axis, corner = sum[2] / count[2] / axis;
+        RecordProperty(name + "_edge", std::to_string(edge));
+        RecordProperty(name + "_corner", std::to_string(corner));
+        EXPECT_NEAR(edge, 1.0, porous ? 0.03 : 0.02) << name;
+        EXPECT_NEAR(corner, 1.0, porous ? 0.03 : 0.02) << name;
+    }
+}
+
+/// Distance at which the autocorrelation of the thickness over a plate falls to 1/e; in sides of the plate.
+double correlationLength(const test::Piece& piece, double side) {
+    constexpr int n = 128;
+    const StackProbe probe(*piece.volume);
+    std::vector<double> field(n * n);
+    for (int y = 0; y < n; ++y)
+        for (int x = 0; x < n; ++x) {
+            double um = 0.0;
+            const auto at = [&](int i) { return side * (0.1 + 0.8 * (i + 0.5) / n); };
+            probe.read({at(x), at(y), 0.0}, {0, 0, 1}, &um);
+            field[std::size_t(y * n + x)] = um;
+        }
+    double mean = 0.0;
+    for (const double f : field)
+        mean += f / (n * n);
+    const auto covariance = [&](int shift) {
+        double sum = 0.0;
+        for (int y = 0; y < n; ++y)
+            for (int x = 0; x + shift < n; ++x) {
+                sum += (field[std::size_t(y * n + x)] - mean) * (field[std::size_t(y * n + x + shift)] - mean);
+                sum += (field[std::size_t(x * n + y)] - mean) * (field[std::size_t((x + shift) * n + y)] - mean);
+            }
+        return sum / (2.0 * n * (n - shift));
+    };
+    const double goal = covariance(0) * std::exp(-1.0);
+    double last = covariance(0);
+    for (int shift = 1; shift < n / 2; ++shift) {
+        const double here = covariance(shift);
+        if (here < goal)
+            return 0.8 * (shift - 1 + (last - goal) / (last - here)) / n;
+        last = here;
+    }
+    return 0.4;
+}
+
+// Cells of two and of four voxels. (At one cell to a voxel the trilinear field itself smooths the pattern: lengths of
+// RDR, BD and DPD are then up to half as long again.)
+TEST(TwoLattices, patternsHaveTheSameGrainAtAnyVoxelSize) {
+    constexpr double side = 32.0;
+    for (const GrowthModel model :
+         {GrowthModel::relaxation, GrowthModel::ballisticDeposition, GrowthModel::directedPercolation}) {
+        VoxelGrowth growth = growthOf(model, 10, 20);
+        growth.cubes = false;
+        growth.options.firstSeeds = 1e-2;
+        growth.options.patch = 4;
+        for (const bool byCells : {true, false}) {
+            if (!byCells && model == GrowthModel::ballisticDeposition)
+                continue; // the height of pores and overhangs is not a field that is smooth over a cell
+            double first = 0.0;
+            for (const int fine : {2, 4}) {
+                VolumeScale scale = test::voxelScale();
+                scale.voxelSize = 1.0 / fine;
+                const double thickness = 8.0;
+                const auto piece = test::makePiece(test::sheet(float(side), 16), scale, (thickness + 3.0) * fine);
+                if (byCells)
+                    coatByCells(*piece, thickness, growth, 1.0);
+                else
+                    growOn(*piece, thickness, growth, 1.0);
+                const double length = correlationLength(*piece, side);
+                if (fine == 2)
+                    first = length;
+                RecordProperty(growthModelName(model) + (byCells ? "_cells_" : "_voxels_") + std::to_string(fine),
+                               std::to_string(length * side));
+                EXPECT_NEAR(length / first, 1.0, 0.1)
+                    << growthModelName(model) << (byCells ? " cells " : " voxels ") << fine;
+            }
+        }
+    }
+}
+
+bool sameBits(const openvdb::FloatGrid& a, const openvdb::FloatGrid& b) {
+    auto other = b.getConstAccessor();
+    for (auto voxel = a.cbeginValueOn(); voxel; ++voxel)
+        if (other.getValue(voxel.getCoord()) != *voxel)
+            return false;
+    return a.activeVoxelCount() == b.activeVoxelCount();
+}
+
+TEST(VoxelGrowth, bitsDoNotDependOnThreadsAndTheNestStaysNested) {
+    for (const GrowthModel model : {GrowthModel::randomDeposition, GrowthModel::relaxation,
+                                    GrowthModel::ballisticDeposition, GrowthModel::directedPercolation}) {
+        openvdb::FloatGrid::Ptr first;
+        openvdb::Int32Grid::Ptr firstIds;
+        for (const std::size_t threads : {1, 2}) {
+            const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+            const auto piece = test::makePiece(test::sphere(10.f, 4), test::voxelScale(), 8.0);
+            auto work = piece->work();
+            coat(work, "cuprite", 0.4, nullptr, piece->progress);
+            growOn(*piece, 6.0, growthOf(model, 10, 20), 1.0);
+            const NestGrids& grids = piece->volume->grids();
+            const auto below = grids.interfaces.front()->getConstAccessor(), base = grids.base->getConstAccessor();
+            for (auto voxel = grids.interfaces.back()->cbeginValueOn(); voxel; ++voxel) {
+                ASSERT_LE(*voxel, below.getValue(voxel.getCoord()));
+                ASSERT_LE(below.getValue(voxel.getCoord()), base.getValue(voxel.getCoord()));
+            }
+            if (!first) {
+                first = grids.interfaces.back()->deepCopy();
+                firstIds = grids.material->deepCopy();
+                continue;
+            }
+            EXPECT_TRUE(sameBits(*first, *grids.interfaces.back())) << growthModelName(model) << threads;
+            for (auto voxel = firstIds->cbeginValueOn(); voxel; ++voxel)
+                ASSERT_EQ(*voxel, grids.material->getConstAccessor().getValue(voxel.getCoord()));
+        }
+    }
+}
+
+TEST(VoxelGrowth, laterStepsContainEarlierOnes) {
+    for (const GrowthModel model : {GrowthModel::randomDeposition, GrowthModel::relaxation,
+                                    GrowthModel::ballisticDeposition, GrowthModel::directedPercolation}) {
+        std::unique_ptr<test::Piece> last;
+        for (const double step : {5.0, 10.0}) {
+            auto piece = test::makePiece(test::sheet(24.f, 8), test::voxelScale(), 50.0);
+            VoxelGrowth growth = growthOf(model, step, 10);
+            growth.options.ofFull = true;
+            growth.options.firstSeeds = 1e-2;
+            growth.options.patch = 4;
+            growOn(*piece, 10.0, growth, 1.0);
+            if (last) {
+                // Voxels whose centres are solid. (IDs also tell of what reaches into a voxel from beside it.)
+                const auto later = piece->volume->grids().surface().getConstAccessor();
+                const auto base = last->volume->grids().base->getConstAccessor();
+                std::size_t count = 0, lost = 0;
+                for (auto voxel = last->volume->grids().surface().cbeginValueOn(); voxel; ++voxel)
+                    if (*voxel < 0.f && base.getValue(voxel.getCoord()) > 0.f) {
+                        ++count;
+                        lost += !(later.getValue(voxel.getCoord()) < 0.f);
+                    }
+                EXPECT_GT(count, 400u) << growthModelName(model);
+                EXPECT_EQ(lost, 0u) << growthModelName(model);
+            }
+            last = std::move(piece);
+        }
+    }
+}
+
+TEST(VoxelGrowth, whereNothingLandsNoBitChanges) {
+    const auto piece = test::makePiece(test::sphere(20.f, 5), test::voxelScale(), 8.0);
+    auto work = piece->work();
+    coat(work, "cuprite", 0.4, nullptr, piece->progress);
+    const auto before = piece->volume->grids().surface().deepCopy();
+    const GrowthLattice lattice = surfaceLattice(piece->surface, 1.0);
+    for (const GrowthModel model : {GrowthModel::relaxation, GrowthModel::ballisticDeposition}) {
+        VoxelGrowth growth = growthOf(model, 10, 20);
+        for (const Imath::V3f& n : lattice.normals)
+            growth.factor.push_back(n.z > 0.f ? 1.f : 0.f);
+        LayerVolume volume = piece->volume->clone();
+        Workpiece copy{volume, *piece->binding};
+        coatByVoxelGrowth(copy, "brochantite", 6.0, lattice, growth, piece->progress);
+        const auto& grown = volume.grids().surface();
+        const auto old = before->getConstAccessor();
+        std::size_t same = 0;
+        for (auto voxel = grown.cbeginValueOn(); voxel; ++voxel) {
+            const openvdb::Coord c = voxel.getCoord();
+            const float was = old.getValue(c);
+            if (c.z() > -4 || std::abs(was) > 1.5f)
+                continue;
+            ASSERT_EQ(*voxel, was) << c << growthModelName(model);
+            ++same;
+        }
+        EXPECT_GT(same, 1000u);
+    }
+}
+
+} // namespace
+} // namespace patina
