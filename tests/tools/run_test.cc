@@ -34,6 +34,7 @@ TEST(Run, WritesExactlyThePromisedFiles) {
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
     EXPECT_EQ(filesIn(folder.path() / "out"),
               (std::set<std::string>{"a.vdb", "a.obj", "a_limit.ply", "preview.png", "report.json", "displacement.exr",
+                                     "a.usda", "a.mtlx",
                                      "diffuse.exr", "lobe_00_copper.exr", "lobe_01_tarnish_1.exr",
                                      "lobe_02_cuprite_2.exr", "base_color.exr", "metallic.exr", "roughness.exr",
                                      "normal.exr", "thickness_01_tarnish_1.exr", "coverage_01_tarnish_1.exr",
