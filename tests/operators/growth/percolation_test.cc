@@ -1,10 +1,12 @@
 // DPD: the paper's patches, and Barabási and Stanley's pinned interfaces.
 
 #include "operators/growth/grow.h"
+#include "support/test_surfaces.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace patina {
@@ -56,6 +58,43 @@ TEST(DirectedPercolation, aSeedIsASquarePatch) {
         EXPECT_EQ(std::count(height.begin(), height.end(), 1.f), side * side);
         EXPECT_EQ(measureHeights(plane, height).patches, 1u);
     }
+}
+
+TEST(DirectedPercolation, patchesOnASphereAreAsWideInEveryDirection) {
+    constexpr double radius = 120.0;
+    const GrowthLattice ball = surfaceLattice(test::sphere(float(radius), 6), 1.0);
+    GrowthOptions options;
+    options.model = GrowthModel::directedPercolation;
+    options.firstSeeds = options.seeding = options.thickening = options.blockedFraction = 0.0;
+    options.patch = 4;
+    options.step = options.total = 12;
+    // Patches in all the directions that a cube has of a kind: 6 faces, 12 edges, 8 corners.
+    double sum[3] = {}, count[3] = {};
+    for (int n = 0; n < 27; ++n) {
+        const Imath::V3d direction(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1);
+        const int kind = int(direction.length2() + 0.5) - 1;
+        if (kind < 0)
+            continue;
+        int nearest = 0;
+        for (std::size_t i = 0; i < ball.size(); ++i)
+            if (Imath::V3d(ball.normals[i]).dot(direction) >
+                Imath::V3d(ball.normals[std::size_t(nearest)]).dot(direction))
+                nearest = int(i);
+        options.seedCells = {nearest};
+        const auto height = growHeights(ball, options, std::uint64_t(n), "patch");
+        double area = 0.0;
+        for (std::size_t i = 0; i < ball.size(); ++i)
+            area += height[i] > 0.f ? ball.areas[i] : 0.0;
+        sum[kind] += radius * std::acos(1.0 - area / (2.0 * M_PI * radius * radius)); // a cap's, in cells
+        count[kind] += 1.0;
+    }
+    const double face = sum[0] / count[0], edge = sum[1] / count[1] / face, corner = sum[2] / count[2] / face;
+    RecordProperty("radius", std::to_string(face));
+    RecordProperty("edge", std::to_string(edge));
+    RecordProperty("corner", std::to_string(corner));
+    EXPECT_GT(face, 20.0);
+    EXPECT_NEAR(edge, 1.0, 0.05);
+    EXPECT_NEAR(corner, 1.0, 0.05);
 }
 
 TEST(DirectedPercolation, patchesSpreadFasterWhereFewerCellsAreBlocked) {
