@@ -1,0 +1,75 @@
+#pragma once
+// A model under thick layers, baked, displaced and held against its volume.
+
+#include "displaced_distance.h"
+
+#include "operators/coat.h"
+#include "optics/material_library.h"
+#include "support/test_surfaces.h"
+#include "surface/atlas.h"
+#include "surface/limit_surface.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+namespace patina::test {
+
+// A model under a coat of 4 to 8 voxels in soft hills, its maps, and how far the displaced mesh is from the volume.
+struct Measured {
+    DisplacedDistance displaced, undisplaced;
+    double foldFraction = 0.0, seconds = 0.0;
+};
+
+inline Measured measure(Mesh mesh, int voxels, int resolution, int dice, bool atlas, bool vectors = false) {
+    if (atlas)
+        makeFaceAtlas(mesh, resolution);
+    LimitSurfaceOptions limit;
+    limit.level = 1;
+    const Imath::V3f size = makeLimitSurface(mesh, limit).bounds().size();
+    const double side = std::max({size.x, size.y, size.z});
+    VolumeScale scale;
+    scale.voxelSize = side / voxels;
+    scale.metresPerUnit = 1e-6 / scale.voxelSize; // a micrometre is a voxel
+    limit.level = -1;
+    limit.targetEdge = 1.5 * scale.voxelSize;
+    const auto piece = makePiece(makeLimitSurface(mesh, limit), scale, 12.0);
+    auto work = piece->work();
+    // Hills of 1/8 of the model: 16 voxels and more, so that the lattice holds them.
+    const FunctionMap hills([&](const MapPoint& point) {
+        const Imath::V3d p = point.position * (16.0 * M_PI / side);
+        return 0.75 + 0.25 * std::sin(p.x) * std::sin(p.y + 1.0) * std::sin(p.z + 2.0);
+    });
+    coat(work, "cuprite_2", 8.0, &hills, piece->progress);
+
+    const MaterialLibrary library = MaterialLibrary::load(PATINA_SOURCE_DIR "/data");
+    const StackOptics optics({&library.at("copper"), &library.at("cuprite_2")});
+    BakeOptions options;
+    options.resolution = resolution;
+    options.foldMask = true;
+    options.vectorDisplacement = vectors;
+    MapSet maps = bake(*piece->volume, piece->surface, optics, options, piece->progress);
+    MapImage zero = *maps.find(vectors ? "vector_displacement" : "displacement");
+    Measured measured;
+    measured.foldFraction = maps.summary.foldFraction;
+    measured.displaced = measureDisplaced(*piece->volume, piece->surface, zero, *maps.find("fold_mask"), dice);
+    std::fill(zero.floats.begin(), zero.floats.end(), 0.f);
+    measured.undisplaced = measureDisplaced(*piece->volume, piece->surface, zero, *maps.find("fold_mask"), 1);
+    const auto print = [](const char* name, const DistanceFigures& figures) {
+        std::printf("%s: %zu points, %zu masked: rms %.4f, 99.9 %% under %.4f, max %.4f voxel\n", name, figures.points,
+                    figures.masked, figures.rms, figures.p999, figures.max);
+    };
+    print("displaced mesh to volume", measured.displaced.meshToVolume);
+    print("volume to displaced mesh", measured.displaced.volumeToMesh);
+    print("without displacement    ", measured.undisplaced.meshToVolume);
+    std::printf("folds: %.4f %%\n", measured.foldFraction * 100.0);
+    return measured;
+}
+
+// Zero displacement must be caught: the mesh is then a coat away from the interface.
+inline void expectControl(const Measured& measured) {
+    EXPECT_GT(measured.undisplaced.meshToVolume.rms, 3.5);
+    EXPECT_GT(measured.undisplaced.volumeToMesh.rms, 3.5);
+}
+
+} // namespace patina::test
