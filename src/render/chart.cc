@@ -36,9 +36,9 @@ double valueAt(const ChartSeries& series, double x) {
 
 struct Axes {
     int left, top, width, height;
-    double xMost, yMost;
+    double xLeast, xMost, yMost;
 
-    double xAt(int column) const { return xMost * (column + 0.5) / width; }
+    double xAt(int column) const { return xLeast + (xMost - xLeast) * (column + 0.5) / width; }
     double rowOf(double y) const { return top + height * (1.0 - y / yMost); }
 };
 
@@ -85,11 +85,12 @@ Chart drawChart(const std::vector<ChartSeries>& series, const ChartOptions& opti
     }
     for (const ChartSeries& one : series)
         yMost = std::max(yMost, *std::max_element(one.y.begin(), one.y.end()));
-    if (!(xMost > 0.0))
-        xMost = 1.0;
+    const double xLeast = options.xFirst;
+    if (!(xMost > xLeast))
+        xMost = xLeast + 1.0;
     if (!(yMost > 0.0))
         yMost = 1.0;
-    const double xStep = niceStep(xMost, 6), yStep = niceStep(yMost, 4);
+    const double xStep = niceStep(xMost - xLeast, 6), yStep = niceStep(yMost, 4);
     yMost = yStep * std::ceil(yMost / yStep - 1e-9);
 
     const int letters = std::clamp(options.width / 44, 10, 24);
@@ -98,11 +99,11 @@ Chart drawChart(const std::vector<ChartSeries>& series, const ChartOptions& opti
                     options.title.empty() ? letters * 3 / 2 : 3 * letters,
                     std::max(16, options.width - legend - 5 * letters),
                     std::max(16, options.height - (options.title.empty() ? 5 : 7) * letters),
+                    xLeast,
                     xMost,
                     yMost};
     const auto text = [&](const std::string& words, double x, double y, TextAlign align, float widest = 0.f) {
-        chart.hasText =
-            drawText(chart.image, words, float(x), float(y), letters, ink, align, widest) && chart.hasText;
+        chart.hasText = drawText(chart.image, words, float(x), float(y), letters, ink, align, widest) && chart.hasText;
     };
     for (double y = 0.0; y <= yMost * (1.0 + 1e-9); y += yStep) {
         const int row = std::min(axes.top + axes.height, static_cast<int>(std::lround(axes.rowOf(y))));
@@ -131,9 +132,9 @@ Chart drawChart(const std::vector<ChartSeries>& series, const ChartOptions& opti
         chart.image.setRgb(axes.left, y, ink);
     for (int x = axes.left; x < axes.left + axes.width; ++x)
         chart.image.setRgb(x, axes.top + axes.height, ink);
-    for (double x = 0.0; x <= xMost * (1.0 + 1e-9); x += xStep)
-        text(fmt::format("{:g}", x), axes.left + axes.width * x / xMost, axes.top + axes.height + 1.4 * letters,
-             TextAlign::centre);
+    for (double x = xStep * std::ceil(xLeast / xStep - 1e-9); x <= xMost * (1.0 + 1e-9); x += xStep)
+        text(fmt::format("{:g}", x), axes.left + axes.width * (x - xLeast) / (xMost - xLeast),
+             axes.top + axes.height + 1.4 * letters, TextAlign::centre);
 
     text(options.title, axes.left, 1.8 * letters, TextAlign::left, float(options.width - axes.left));
     text(options.xLabel, axes.left + 0.5 * axes.width, axes.top + axes.height + 2.8 * letters, TextAlign::centre);

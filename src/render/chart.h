@@ -20,6 +20,7 @@ struct ChartSeries {
 struct ChartOptions {
     int width = 640, height = 400; ///< pixels
     std::string title, xLabel, yLabel;
+    double xFirst = 0.0;  ///< where the x axis begins
     bool stacked = false; ///< areas on top of each other, the first one at the bottom; all series have the same x
 };
 
@@ -28,7 +29,7 @@ struct Chart {
     bool hasText = true;
 };
 
-/// The axes begin at 0 and end at a round number. Names stand in a legend on the right.
+/// The axes begin at 0 (x: at xFirst); y ends at a round number. Names stand in a legend on the right.
 /// \throws RunError where there is nothing to draw or a value is negative or not finite
 Chart drawChart(const std::vector<ChartSeries>& series, const ChartOptions& options);
 
