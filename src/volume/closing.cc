@@ -6,6 +6,7 @@
 #include "volume/leaf_lattice.h"
 #include "volume/nest_grids.h"
 
+#include <Imath/ImathBox.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
@@ -110,7 +111,8 @@ std::vector<std::uint8_t> coveredSeeds(const DistanceTransform& surface, const C
                 }
                 const float film = centre < 0 ? 8.f : balls.distance(block.block, x, centre) - radius;
                 covered[s] = film > ignore;
-                // A seed on an edge may lie on a chord below it: what is surely a film is so on the faces beside it too.
+                // A seed on an edge may lie on a chord below it: what is surely a film is so on the faces beside it
+                // too.
                 if (covered[s])
                     thickest[b] = std::max(thickest[b], surface.seeds().patches[s].bentness() > 0.3f
                                                             ? std::min(film, 0.5f * surelyFilm)
@@ -122,6 +124,27 @@ std::vector<std::uint8_t> coveredSeeds(const DistanceTransform& surface, const C
     return covered;
 }
 
+// Marks the blocks with a voxel that may be nearer than `distance` to a covered seed of this block.
+void markAround(const PointBlocks& points, const PointBlocks::Block& block, const std::vector<std::uint8_t>& covered,
+                int reach, float distance, BlockBox& marks) {
+    Imath::Box3f box;
+    for (std::uint32_t s = block.begin; s < block.end; ++s)
+        if (covered[s])
+            box.extendBy(Imath::V3f(points.x[s], points.y[s], points.z[s]));
+    if (box.isEmpty())
+        return;
+    for (int i = -reach; i <= reach; ++i)
+        for (int j = -reach; j <= reach; ++j)
+            for (int k = -reach; k <= reach; ++k) {
+                const Imath::V3f low(8.f * float(i), 8.f * float(j), 8.f * float(k));
+                Imath::V3f apart;
+                for (int axis = 0; axis < 3; ++axis)
+                    apart[axis] = std::max({0.f, low[axis] - box.max[axis], box.min[axis] - low[axis] - 7.f});
+                if (apart.length2() <= distance * distance)
+                    marks.set(block.block.offsetBy(i, j, k), 0);
+            }
+}
+
 } // namespace
 
 Closing closeInterface(LayerVolume& volume, int k, const ClosingOptions& options, Progress& progress) {
@@ -129,7 +152,8 @@ Closing closeInterface(LayerVolume& volume, int k, const ClosingOptions& options
         throw RunError("closing", "the ball's radius must be positive", "give a length of the model, such as 0.2mm");
     NestGrids& grids = volume.grids();
     const double voxelSize = volume.scale().voxelSize;
-    const auto radius = static_cast<float>(options.radius / voxelSize), ignore = static_cast<float>(options.ignoreVoxels);
+    const auto radius = static_cast<float>(options.radius / voxelSize),
+               ignore = static_cast<float>(options.ignoreVoxels);
     const auto margin = static_cast<float>(options.marginVoxels);
     const auto source = [&]() -> const openvdb::FloatGrid& {
         return k < 0 ? *grids.base : k == 0 ? grids.floor() : *grids.interfaces[k - 1];
@@ -142,8 +166,7 @@ Closing closeInterface(LayerVolume& volume, int k, const ClosingOptions& options
         progress.checkpoint();
         const ClosingBalls balls(surface, radius, options.global, progress);
         const NearestPoints nearestBall(balls.centres());
-        const std::vector<std::uint8_t> covered =
-            coveredSeeds(surface, balls, nearestBall, radius, ignore, progress);
+        const std::vector<std::uint8_t> covered = coveredSeeds(surface, balls, nearestBall, radius, ignore, progress);
 
         // A film's voxel is nearer than r to the surface, at a seed that the closing covers.
         const PointBlocks& points = surface.seeds().points;
@@ -151,19 +174,12 @@ Closing closeInterface(LayerVolume& volume, int k, const ClosingOptions& options
         const int reach = static_cast<int>(std::ceil((radius + margin) / 8.f));
         box.expand(reach);
         BlockBox marks(box);
-        bool any = false;
         for (const PointBlocks::Block& block : points.blocks)
-            if (std::any_of(covered.begin() + block.begin, covered.begin() + block.end, [](auto c) { return c != 0; })) {
-                marks.set(block.block, 0);
-                any = true;
-            }
+            markAround(points, block, covered, reach, radius + margin, marks);
         std::vector<openvdb::Coord> blocks;
-        if (any) {
-            widenMarks(marks, reach);
-            for (std::size_t s = 0; s < marks.numbers().size(); ++s)
-                if (marks.numbers()[s] >= 0)
-                    blocks.push_back(marks.blockOf(s));
-        }
+        for (std::size_t s = 0; s < marks.numbers().size(); ++s)
+            if (marks.numbers()[s] >= 0)
+                blocks.push_back(marks.blockOf(s));
         std::vector<std::unique_ptr<Film>> found(blocks.size());
         tbb::enumerable_thread_specific<Searchers> scratch;
         const LevelSetBlocks& levelSet = surface.levelSet();
@@ -219,11 +235,15 @@ Closing closeInterface(LayerVolume& volume, int k, const ClosingOptions& options
                 if (centre == NearestInBlock::closer)
                     continue; // in the air, far above the film
                 const Imath::V3f x(float(pos >> 6), float((pos >> 3) & 7), float(pos & 7));
-                // What no ball comes near is filled.
-                const float level = centre < 0 ? -radius - 8.f : radius - balls.distance(block, x, centre);
                 const bool isActive = active[pos >> 6] & bit;
                 const float here = isActive ? leaf->buffer().data()[pos] / static_cast<float>(voxelSize) : infinite;
-                if (isActive ? here - level <= ignore : level > margin)
+                const auto isAir = [&](float level) { return isActive ? here - level <= ignore : level > margin; };
+                // The ball that is placed comes at least as near as the one found.
+                if (centre >= 0 && isAir(radius - (balls.centres().from(block, centre) - x).length()))
+                    continue;
+                // What no ball comes near is filled.
+                const float level = centre < 0 ? -radius - 8.f : radius - balls.distance(block, x, centre);
+                if (isAir(level))
                     continue;
                 film->level[pos] = level;
                 if (!isActive)

@@ -55,7 +55,8 @@ void ClosingBalls::findShell(Progress& progress) {
         if (lattice_.numbers()[s] < 0) {
             const openvdb::Coord block = lattice_.blockOf(s);
             const FloatLeaf* leaf = levelSet.leafAt(block);
-            lattice_.numbers()[s] = (leaf ? leaf->buffer().data()[0] : levelSet.fillAt(block)) > 0.f ? freeBlock : blocked;
+            lattice_.numbers()[s] =
+                (leaf ? leaf->buffer().data()[0] : levelSet.fillAt(block)) > 0.f ? freeBlock : blocked;
         }
     });
 
@@ -158,8 +159,10 @@ bool ClosingBalls::place(const openvdb::Coord& block, const Imath::V3f& x, Patch
             next = centre + step * (1.5f / moved);
         centre = next;
         const bool added = mayAdd && addPatches(block, centre, patches);
-        if (moved < 2e-3f && !added)
-            break;
+        // No foot goes further than the centre does: what was clear before a small step is so, but for the step, after
+        // it.
+        if (moved < 1e-2f && !added)
+            return lacking + moved < 0.1f;
         const Imath::V3f gone = centre - start;
         if (gone.dot(gone) > 9.f)
             return false;
@@ -198,7 +201,8 @@ bool ClosingBalls::touches(std::int32_t seed) const {
         for (int n = 0; n < 8 && !reached; ++n) {
             const openvdb::Coord corner = cell.offsetBy(n >> 2, (n >> 1) & 1, n & 1);
             const std::int32_t number = lattice_.at(corner >> 3);
-            reached = number >= 0 && (reachable_[number][corner.x() & 7] >> (8 * (corner.y() & 7) + (corner.z() & 7)) & 1);
+            reached =
+                number >= 0 && (reachable_[number][corner.x() & 7] >> (8 * (corner.y() & 7) + (corner.z() & 7)) & 1);
         }
         if (!reached)
             return false;
