@@ -110,7 +110,7 @@ void tell(const Arguments& arguments, const Options& options, Console& console) 
         text += "\n  layers, top to bottom:\n";
         for (auto layer = stack->layers.rbegin(); layer != stack->layers.rend(); ++layer)
             text += fmt::format(
-                "    {:<24} {:>9.3g} µm on average, {:>8.3g} at most, on {:5.1f} % of the surface, {:.3g} mm³\n",
+                "    {:<24} {:>9.3g} µm on average, {:>8.4g} at most, on {:5.1f} % of the surface, {:.3g} mm³\n",
                 layer->material, layer->meanUm, layer->maxUm, 100.0 * layer->coverage, layer->volumeM3 * 1e9);
     } else {
         text += "\n  layers' thickness: give the model behind the file\n";
