@@ -147,7 +147,7 @@ void writeResults(const Task& task, const RunResult& result, const nlohmann::ord
                                    stack.unreadable * 100.0));
     finishReport(report, console, outputs);
     writeTextFile(reportTo, report.dump(2) + "\n");
-    console.result(fmt::format("{}: {} layers, {:.3g} µm on average, {:.4g} µm at most; content hash {}",
+    console.result(fmt::format("{}: {} layers, {:.4g} µm on average, {:.4g} µm at most; content hash {}",
                                folder.string(), volume.layerCount(), stack.total.meanUm, stack.total.maxUm,
                                report["content_hash"].get<std::string>()));
 }
