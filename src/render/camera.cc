@@ -63,9 +63,7 @@ Camera Camera::framed(const Imath::Box3f& bounds, const CameraView& view, float 
     return framed(corners(bounds), view, aspect);
 }
 
-Camera Camera::framed(const std::vector<Imath::V3f>& points, const CameraView& view, float aspect) {
-    if (points.empty())
-        throw RunError("camera", "there is nothing to look at");
+Camera Camera::oriented(const CameraView& view, float aspect) {
     if (!(aspect > 0.01f && aspect < 100.f))
         throw RunError("camera", "the picture's sides must not differ by more than a factor of 100");
     if (!(view.fieldOfViewDegrees >= 0.5f && view.fieldOfViewDegrees <= 150.f))
@@ -85,7 +83,23 @@ Camera Camera::framed(const std::vector<Imath::V3f>& points, const CameraView& v
     const float half = std::tan(0.5f * radians(view.fieldOfViewDegrees));
     camera.halfWidth_ = half * std::max(aspect, 1.f);
     camera.halfHeight_ = half * std::max(1.f / aspect, 1.f);
+    return camera;
+}
 
+Camera Camera::aimed(const Imath::V3f& target, float distance, const CameraView& view, float aspect) {
+    if (!(distance > 0.f) || !std::isfinite(distance))
+        throw RunError("camera", "its distance must be above 0");
+    if (!std::isfinite(target.x + target.y + target.z))
+        throw RunError("camera", "the point to look at is not finite");
+    Camera camera = oriented(view, aspect);
+    camera.position_ = target - camera.forward_ * distance;
+    return camera;
+}
+
+Camera Camera::framed(const std::vector<Imath::V3f>& points, const CameraView& view, float aspect) {
+    if (points.empty())
+        throw RunError("camera", "there is nothing to look at");
+    Camera camera = oriented(view, aspect);
     // With the camera at (cx, cy, -d) in its own axes, a point (x, y, z) lies left of the right edge where
     // x - cx <= t (d + z), and right of the left edge where cx - x <= t (d + z). So d t + cx >= A = max(x - t z) and
     // d t - cx >= B = max(-x - t z): the smallest d is (A + B) / 2t and it centres the points at cx = (A - B) / 2.
@@ -114,10 +128,22 @@ Camera Camera::framed(const std::vector<Imath::V3f>& points, const CameraView& v
     return camera;
 }
 
-CameraRay Camera::ray(float x, float y) const {
+void Camera::setLens(float radius, float focusDistance) {
+    if (!(radius >= 0.f) || !(focusDistance > 0.f) || !std::isfinite(radius + focusDistance))
+        throw RunError("camera", "its lens must have a radius of 0 or more and focus in front of it");
+    lensRadius_ = radius;
+    focusDistance_ = focusDistance;
+}
+
+CameraRay Camera::ray(float x, float y, const Imath::V2f& lens) const {
     const Imath::V3f direction =
         forward_ + right_ * ((2.f * x - 1.f) * halfWidth_) + upward_ * ((1.f - 2.f * y) * halfHeight_);
-    return {position_, direction.normalized()};
+    if (lensRadius_ == 0.f)
+        return {position_, direction.normalized()};
+    // All rays through the lens meet where the ray through its middle crosses the plane in focus.
+    const float r = lensRadius_ * std::sqrt(lens.x), phi = 2.f * float(M_PI) * lens.y;
+    const Imath::V3f aside = right_ * (r * std::cos(phi)) + upward_ * (r * std::sin(phi));
+    return {position_ + aside, (direction * focusDistance_ - aside).normalized()};
 }
 
 Imath::V2f Camera::project(const Imath::V3f& point) const {

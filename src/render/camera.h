@@ -38,8 +38,18 @@ class Camera {
     /// The same for the corners of a box.
     static Camera framed(const Imath::Box3f& bounds, const CameraView& view, float aspect);
 
+    /// Stands at a distance from a point that it has in the middle. \throws RunError as framed() does, and for a
+    /// distance that is not above 0
+    static Camera aimed(const Imath::V3f& target, float distance, const CameraView& view, float aspect);
+
+    /// Gives the camera a lens of this radius, focused on the plane at this distance in front of it (scene units):
+    /// what is nearer or further blurs. Radius 0: a pinhole, as cameras are made. \throws RunError
+    void setLens(float radius, float focusDistance);
+
     /// The ray through a point of the picture: (0, 0) is its top left corner, (1, 1) its bottom right.
-    CameraRay ray(float x, float y) const;
+    /// \param lens  where on the lens it starts, uniform in 0 … 1 each; without a lens it does not matter
+    CameraRay ray(float x, float y, const Imath::V2f& lens = Imath::V2f(0.5f)) const;
+    bool hasLens() const { return lensRadius_ > 0.f; }
     /// Where a point appears in the picture, in the same coordinates. Only for points in front of the camera.
     Imath::V2f project(const Imath::V3f& point) const;
 
@@ -47,9 +57,12 @@ class Camera {
     const Imath::V3f& forward() const { return forward_; }
 
   private:
+    static Camera oriented(const CameraView& view, float aspect);
+
     Imath::V3f position_, right_, upward_, forward_;
     float halfWidth_ = 1.f; ///< of the picture plane at distance 1
     float halfHeight_ = 1.f;
+    float lensRadius_ = 0.f, focusDistance_ = 1.f;
 };
 
 } // namespace patina

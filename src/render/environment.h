@@ -15,6 +15,8 @@ class Environment {
     virtual ~Environment() = default;
     /// Radiance from a unit direction (pointing away from the scene), finite and not negative.
     virtual Imath::V3f radiance(const Imath::V3f& direction) const = 0;
+    /// How many looks each way tell what a cell of 1.9 degrees holds, for the tables it is sampled by.
+    virtual int looksPerCell() const { return 3; }
 };
 
 /// The same radiance from everywhere: an overcast furnace.

@@ -57,7 +57,7 @@ Lights::Lights(std::shared_ptr<const Environment> environment, std::optional<Key
     : environment_(std::move(environment)), key_(key), frame_(uprightFrame(up)) {
     double power = 0.0;
     std::vector<float> luminances;
-    constexpr int looks = 3; // into each cell, each way
+    const int looks = environment_->looksPerCell(); // into each cell, each way
     for (int row = 0; row < rows; ++row)
         for (int column = 0; column < columns; ++column) {
             float sum = 0.f;

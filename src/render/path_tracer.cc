@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <thread>
 
@@ -215,6 +216,9 @@ Rendering render(const RenderScene& scene, const Camera& camera, const Lights& l
                  Progress& progress) {
     check(scene, options);
     const Stage stage(scene, lights);
+    if (stage.isInside(camera.position()))
+        throw RunError("camera", "it stands inside the object",
+                       "move it away: a larger distance, or another direction");
     const KeyedRandom random(options.seed, "picture", "paths");
 
     Rendering result;
@@ -222,41 +226,66 @@ Rendering render(const RenderScene& scene, const Camera& camera, const Lights& l
     const int across = (options.width + tileSize - 1) / tileSize;
     const int down = (options.height + tileSize - 1) / tileSize;
     std::atomic<std::uint64_t> rays{0};
-    std::atomic<int> done{0};
     const std::thread::id caller = std::this_thread::get_id();
+    const int lensDraw = 1 + options.maxDepth * drawsPerVertex; // behind those of the path
 
-    const auto renderPixel = [&](int x, int y) {
+    // Adds samples first … last - 1 of a pixel to its sum.
+    const auto samplePixel = [&](int x, int y, int first, int last) {
         PixelSampler sampler(random, x, y);
-        V3f sum(0.f);
+        V3f sum = result.image.rgb(x, y);
         std::uint64_t traced = 0;
-        for (int sample = 0; sample < options.samples; ++sample) {
+        for (int sample = first; sample < last; ++sample) {
             sampler.startSample(std::uint32_t(sample));
             const V2f offset = sampler.next2();
+            V2f lens(0.5f);
+            if (camera.hasLens()) {
+                sampler.seek(lensDraw);
+                lens = sampler.next2();
+            }
             PathWalk walk(stage, lights, options, sampler);
-            const V3f light = walk.radiance(camera.ray((float(x) + 0.5f + tent(offset.x)) / float(options.width),
-                                                       (float(y) + 0.5f + tent(offset.y)) / float(options.height)));
+            const V3f light =
+                walk.radiance(camera.ray((float(x) + 0.5f + tent(offset.x)) / float(options.width),
+                                         (float(y) + 0.5f + tent(offset.y)) / float(options.height), lens));
             if (isFinite(light))
                 sum += light;
             traced += walk.rays();
         }
-        result.image.setRgb(x, y, sum / float(options.samples));
+        result.image.setRgb(x, y, sum);
         return traced;
     };
-    tbb::parallel_for(tbb::blocked_range<int>(0, across * down, 1), [&](const tbb::blocked_range<int>& range) {
-        for (int tile = range.begin(); tile != range.end(); ++tile) {
-            progress.checkpoint();
-            const int left = tile % across * tileSize, top = tile / across * tileSize;
-            std::uint64_t traced = 0;
-            for (int y = top; y < std::min(top + tileSize, options.height); ++y)
-                for (int x = left; x < std::min(left + tileSize, options.width); ++x)
-                    traced += renderPixel(x, y);
-            rays += traced;
-            const int finished = ++done;
-            // Progress listens to one thread only: the caller's, which works on tiles too.
-            if (std::this_thread::get_id() == caller)
-                progress.update(double(finished) / (across * down));
+    const auto takeRound = [&](int first, int last) {
+        std::atomic<int> done{0};
+        tbb::parallel_for(tbb::blocked_range<int>(0, across * down, 1), [&](const tbb::blocked_range<int>& range) {
+            for (int tile = range.begin(); tile != range.end(); ++tile) {
+                progress.checkpoint();
+                const int left = tile % across * tileSize, top = tile / across * tileSize;
+                std::uint64_t traced = 0;
+                for (int y = top; y < std::min(top + tileSize, options.height); ++y)
+                    for (int x = left; x < std::min(left + tileSize, options.width); ++x)
+                        traced += samplePixel(x, y, first, last);
+                rays += traced;
+                const int finished = ++done;
+                // Progress listens to one thread only: the caller's, which works on tiles too.
+                if (std::this_thread::get_id() == caller)
+                    progress.update((first + double(last - first) * finished / (across * down)) / options.samples);
+            }
+        });
+    };
+    using Clock = std::chrono::steady_clock;
+    const auto begin = Clock::now();
+    while (result.samples < options.samples) {
+        int next = options.samples;
+        if (options.seconds > 0.0) {
+            next = std::min(options.samples, std::max(1, 2 * result.samples));
+            const double gone = std::chrono::duration<double>(Clock::now() - begin).count();
+            if (result.samples > 0 && gone + gone / result.samples * (next - result.samples) > options.seconds)
+                break;
         }
-    });
+        takeRound(result.samples, next);
+        result.samples = next;
+    }
+    for (float& c : result.image.pixels)
+        c /= float(result.samples);
     result.rays = rays;
     return result;
 }

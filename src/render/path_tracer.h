@@ -19,16 +19,21 @@ struct RenderOptions {
     float indirectClamp = 6.f; ///< light that arrives after two or more bounces counts at most this much per path (no
                                ///< fireflies); 1 is about white
     std::uint64_t seed = 0;
+    /// Above 0: samples are taken in rounds (1, 1, 2, 4 … to each pixel) and no round begins that would end after this
+    /// many seconds. The picture is then that of `Rendering::samples`, to the bit. 0: all samples.
+    double seconds = 0.0;
 };
 
 struct Rendering {
     Image image;            ///< linear Rec.709 light
     std::uint64_t rays = 0; ///< traced, shadow rays included
+    int samples = 0;        ///< taken of each pixel
 };
 
 /// Path tracing with multiple importance sampling between lights and BSDF (power heuristic), a tent filter of one
 /// pixel's radius and Russian roulette from the third surface on. The same bits on any number of threads.
-/// \throws RunError where there is nothing to render or an option is out of range; Interrupted.
+/// \throws RunError where there is nothing to render, an option is out of range or the camera stands inside the object;
+/// Interrupted.
 Rendering render(const RenderScene& scene, const Camera& camera, const Lights& lights, const RenderOptions& options,
                  Progress& progress);
 

@@ -16,7 +16,7 @@ struct SectionOptions {
     Imath::V3d along{1.0, 0.0, 0.0}; ///< the direction from left to right
     double width = 0.0;              ///< scene units that the cut is long; 0: 48 voxels
     double stretch = 0.0;   ///< how many times life size thickness is drawn against length; 0: to fit the picture
-    bool unrolled = true; ///< the surface as a straight line; otherwise the plane as it is, thickness as drawn
+    bool unrolled = true;   ///< the surface as a straight line; otherwise the plane as it is, thickness as drawn
     int pictureWidth = 960; ///< pixels, legend included
     std::string title;
 };

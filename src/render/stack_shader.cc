@@ -9,16 +9,38 @@ namespace patina {
 StackShader::StackShader(const LayerVolume& volume, const SurfaceMesh& surface, const StackOptics& optics)
     : surface_(surface), optics_(optics), probe_(volume) {}
 
-PatinaBsdf StackShader::bsdf(const SurfacePoint& point) const {
+namespace {
+
+constexpr float presentUm = 1e-3f; // a nanometre, as the material grid counts it
+
+} // namespace
+
+const Appearance& StackShader::look(const SurfacePoint& point, float* thicknessUm) const {
     std::array<double, StackOptics::maxLayers> thickness;
-    std::array<float, StackOptics::maxLayers> thicknessUm;
     probe_.read(positionAt(surface_, point), normalAt(surface_, point), thickness.data());
     for (int k = 0; k < probe_.layerCount(); ++k)
         thicknessUm[k] = static_cast<float>(thickness[k]);
     // Called for every path: the lobes' storage is kept from one call to the next.
     static thread_local Appearance look;
-    optics_.evaluate(thicknessUm.data(), look);
-    return PatinaBsdf(look);
+    optics_.evaluate(thicknessUm, look);
+    return look;
+}
+
+PatinaBsdf StackShader::bsdf(const SurfacePoint& point) const {
+    std::array<float, StackOptics::maxLayers> thicknessUm;
+    return PatinaBsdf(look(point, thicknessUm.data()));
+}
+
+PointFeatures StackShader::features(const SurfacePoint& point) const {
+    std::array<float, StackOptics::maxLayers> thicknessUm;
+    PointFeatures features;
+    features.albedo = look(point, thicknessUm.data()).baseColour;
+    for (int k = 0; k < probe_.layerCount(); ++k) {
+        features.thicknessUm += thicknessUm[k];
+        if (thicknessUm[k] > presentUm)
+            features.material = k + 1;
+    }
+    return features;
 }
 
 std::vector<float> StackShader::vertexHeights() const {

@@ -3,6 +3,7 @@
 
 #include "optics/layer_stack.h"
 #include "optics/patina_bsdf.h"
+#include "render/features.h"
 #include "surface/mesh.h"
 #include "volume/stack_probe.h"
 
@@ -18,11 +19,15 @@ class StackShader {
     StackShader(const LayerVolume& volume, const SurfaceMesh& surface, const StackOptics& optics);
 
     PatinaBsdf bsdf(const SurfacePoint& point) const;
+    PointFeatures features(const SurfacePoint& point) const;
 
     /// Height of the air's interface above the base at every vertex, scene units as drawn in the volume.
     std::vector<float> vertexHeights() const;
 
   private:
+    /// Of this thread, until the next call. \param thicknessUm  receives each layer's
+    const Appearance& look(const SurfacePoint& point, float* thicknessUm) const;
+
     const SurfaceMesh& surface_;
     const StackOptics& optics_;
     StackProbe probe_;

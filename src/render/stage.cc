@@ -47,7 +47,25 @@ float LambertBsdf::pdf(const V3f&, const V3f& wi) const {
     return std::max(0.f, wi.z) / pi;
 }
 
-Stage::Stage(const RenderScene& scene, const Lights& lights)
+Stage::Stage(const RenderScene& scene, const Lights& lights) : Stage(scene) {
+    backdrop_ = lights.irradiance(upright_.normal) * (scene.groundAlbedo / pi * backdropShade);
+}
+
+bool Stage::isInside(const V3f& position) const {
+    if (!scene_.surface->closed)
+        return false;
+    int backs = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const float sign : {-1.f, 1.f}) {
+            V3f direction(0.03f, 0.05f, 0.07f); // off the axes, along which meshes have their edges
+            direction[axis] = sign;
+            const auto hit = rays_.intersect(position, direction);
+            backs += hit && (hit->geometricNormal ^ direction) > 0.f;
+        }
+    return backs > 3;
+}
+
+Stage::Stage(const RenderScene& scene)
     : scene_(scene), rays_(scene.surface->positions, scene.surface->triangles), upright_(uprightFrame(scene.up)) {
     const Imath::Box3f box = scene.surface->bounds();
     centre_ = box.center();
@@ -62,7 +80,6 @@ Stage::Stage(const RenderScene& scene, const Lights& lights)
     floorHeight_ = lowest - 1e-3f * radius_;
     // A hit is placed by barycentric weights, to a few units in the last place of the coordinates.
     clearance_ = 4e-6f * std::max(farthest, radius_);
-    backdrop_ = lights.irradiance(upright_.normal) * (scene.groundAlbedo / pi * backdropShade);
 }
 
 StageHit Stage::intersect(const V3f& origin, const V3f& direction, bool indirect, StagePoint& point) const {

@@ -36,6 +36,11 @@ class Stage {
   public:
     /// \param scene  its surface must outlive the stage.
     Stage(const RenderScene& scene, const Lights& lights);
+    /// For rays alone: the backdrop is black.
+    explicit Stage(const RenderScene& scene);
+
+    /// Whether a point lies inside a closed surface: most ways out of it meet backs first.
+    bool isInside(const Imath::V3f& position) const;
 
     /// `indirect`: not a camera ray, so that the inside of a closed surface means an error of rounding.
     StageHit intersect(const Imath::V3f& origin, const Imath::V3f& direction, bool indirect, StagePoint& point) const;

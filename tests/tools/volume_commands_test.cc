@@ -111,6 +111,22 @@ TEST_F(VolumeCommands, RenderMakesAPictureWithOrWithoutTheModel) {
         std::filesystem::remove(folder.path() / "pictures/ball.png");
     }
     EXPECT_EQ(run({"render", "ball/ball.vdb", "--picture", "0"}).exitCode, 2);
+
+    const auto small = [&](Arguments words) {
+        words.insert(words.begin(), {"render", "ball/ball.vdb", "--picture", "48", "--samples", "2", "-o", "lit"});
+        return run(words);
+    };
+    for (const Arguments& words :
+         {Arguments{"--light", "sky", "--sun", "20,10"}, Arguments{"--light", "overcast", "--no-floor"},
+          Arguments{"--from", "volume", "--exr"}, Arguments{"--camera", "30,20,0.5,30", "--f-stop", "2"},
+          Arguments{"--closeup", "0.05,0.05,0,0.01", "--view", "srgb", "--exposure", "-1"}})
+        EXPECT_EQ(small(words).exitCode, 0) << words[0];
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "lit/ball.exr"));
+    for (const Arguments& words :
+         {Arguments{"--light", "moon"}, Arguments{"--camera", "30"}, Arguments{"--sun", "x,1", "--light", "sky"},
+          Arguments{"--closeup", "5,5,5,0.01"}, Arguments{"--closeup", "0.05,0.05,0,0"}, Arguments{"--from", "air"}})
+        EXPECT_EQ(small(words).exitCode, 2) << words[1];
+    EXPECT_EQ(small({"--camera", "0,0,0.01"}).exitCode, 1); // inside the metal
 }
 
 TEST_F(VolumeCommands, ProbeReadsTheStackAtPoints) {

@@ -6,6 +6,7 @@
 #include "data_folder.h"
 #include "figure_plan.h"
 #include "outputs.h"
+#include "picture.h"
 #include "script_run.h"
 #include "section_input.h"
 #include "weather_series.h"

@@ -4,6 +4,7 @@
 #include "console.h"
 #include "existing_volume.h"
 #include "outputs.h"
+#include "picture.h"
 
 #include "base/errors.h"
 
@@ -41,6 +42,7 @@ void addRenderCommand(CLI::App& app, Options& options, Action& action) {
     addModelOptions(*command, options);
     addOpticsOptions(*command, options);
     addPictureOptions(*command, options);
+    addRenderOptions(*command, options);
     command->callback([&options, &action, arguments] {
         action = [&options, arguments](Console& console) { renderVolume(*arguments, options, console); };
     });

@@ -182,6 +182,65 @@ void addPictureOptions(CLI::App& app, Options& options, const PictureDefaults& d
         ->group(group);
 }
 
+void addRenderOptions(CLI::App& app, Options& options) {
+    const std::string camera = "Camera", light = "Light", files = "Files";
+    app.add_option("--from", options.from,
+                   "The surface shown: mesh (the model, displaced; default) or volume (the voxels' own)")
+        ->check(oneOf({"mesh", "volume"}))
+        ->type_name("WHAT")
+        ->group("Picture");
+    app.add_option("--time", options.seconds, "Take as many samples as fit into so many seconds, --samples at most")
+        ->check(numberAboveZero())
+        ->type_name("SECONDS")
+        ->group("Picture");
+    app.add_option("--aspect", options.aspect, "Width over height (default: the subject's)")
+        ->check(numberWithin(0.05, 20.0))
+        ->type_name("X")
+        ->group("Picture");
+    app.add_option("--camera", options.camera,
+                   "Degrees around the model from its front and above the horizon; distance from its middle in scene "
+                   "units (default: all of it in the picture); field of view, degrees (default 22)")
+        ->type_name("AZ,EL[,DISTANCE[,FOV]]")
+        ->group(camera);
+    app.add_option("--closeup", options.closeUp,
+                   "Fill the picture with a patch: a point near the surface, the patch's side")
+        ->type_name("X,Y,Z,SIZE")
+        ->group(camera);
+    app.add_option("--f-stop", options.fStop,
+                   "Depth of field of a full-frame lens at this stop, focused on the picture's middle")
+        ->check(numberWithin(0.5, 256.0))
+        ->type_name("N")
+        ->group(camera);
+    app.add_option("--light", options.light,
+                   "studio (default), sky (sun and clear sky), overcast, uniform, or a panorama (EXR, HDR)")
+        ->type_name("NAME|FILE")
+        ->group(light);
+    app.add_option("--sun", options.sun, "Where it stands for --light sky, degrees (default -50,40)")
+        ->type_name("AZ,ALT")
+        ->group(light);
+    app.add_option("--turn-light", options.turnLight, "Turns all light about the up axis, degrees")
+        ->check(numberWithin(-360.0, 360.0))
+        ->type_name("DEG")
+        ->group(light);
+    app.add_option("--light-strength", options.lightStrength, "Factor on a panorama's or uniform light (default 1)")
+        ->check(numberWithin(0.0, 1e6))
+        ->type_name("X")
+        ->group(light);
+    app.add_flag("!--no-floor", options.floor, "Without a floor: the light itself is the background")->group(light);
+    app.add_flag("--exr", options.exr,
+                 "Also NAME.exr: light, albedo, N, Z, A, material (0 metal, k layer k), thickness in µm")
+        ->group(files);
+    app.add_option("--view", options.viewTransform,
+                   "How light becomes the PNG: filmic (default) or srgb (clipped at white)")
+        ->check(oneOf({"filmic", "srgb"}))
+        ->type_name("NAME")
+        ->group(files);
+    app.add_option("--exposure", options.exposureStops, "Of the PNG, in stops (default 0)")
+        ->check(numberWithin(-20.0, 20.0))
+        ->type_name("STOPS")
+        ->group(files);
+}
+
 void takeDefaults(const CLI::App& app, const PictureDefaults& defaults, Options& options) {
     if (app.count("--picture") == 0)
         options.pictureSize = defaults.size;

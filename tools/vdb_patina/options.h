@@ -56,6 +56,21 @@ struct Options {
     int samples = 32;
     std::optional<double> azimuth;
     std::optional<double> elevation;
+    // … of `render` alone:
+    std::string from = "mesh";    ///< the surface shown: mesh (displaced) or volume (its interface with the air)
+    std::string light = "studio"; ///< studio, sky, overcast, uniform, or a panorama's file
+    std::string sun;              ///< "azimuth,altitude", degrees
+    double turnLight = 0.0;       ///< degrees about up
+    double lightStrength = 1.0;
+    std::string camera;  ///< "azimuth,elevation[,distance[,field of view]]"
+    std::string closeUp; ///< "x,y,z,size", scene units of the model
+    double aspect = 0.0; ///< width over height; 0: the subject's
+    double fStop = 0.0;  ///< 0: everything is sharp
+    bool floor = true;
+    bool exr = false;
+    std::string viewTransform = "filmic";
+    double exposureStops = 0.0;
+    double seconds = 0.0; ///< to render in; 0: as long as all samples take
 
     // The run.
     std::vector<std::string> settings; ///< NAME=VALUE
@@ -80,6 +95,8 @@ struct PictureDefaults {
     int size = 640, samples = 32;
 };
 void addPictureOptions(CLI::App& app, Options& options, const PictureDefaults& defaults = {});
+/// Camera, light and files of `render`.
+void addRenderOptions(CLI::App& app, Options& options);
 /// Puts a command's own defaults where its command line says nothing.
 void takeDefaults(const CLI::App& app, const PictureDefaults& defaults, Options& options);
 void addRunOptions(CLI::App& app, Options& options);

@@ -4,12 +4,6 @@
 #include "export/materialx_file.h"
 #include "export/texture_file.h"
 #include "export/usd_file.h"
-#include "render/camera.h"
-#include "render/displace.h"
-#include "render/film.h"
-#include "render/lights.h"
-#include "render/path_tracer.h"
-#include "render/stack_shader.h"
 #include "surface/mesh_file.h"
 #include "volume/vdb_file.h"
 
@@ -34,42 +28,6 @@ std::filesystem::path outputFolder(const Options& options, const std::string& na
     const std::filesystem::path folder = options.output.empty() ? name : options.output;
     makeWritableFolder(folder);
     return folder;
-}
-
-// A close-up lies on the photographer's table, wherever on the model it was cut out: its mean normal half way between
-// the front and up. Its sides are cuts, not the inside of a body.
-static void turnToViewer(SurfaceMesh& surface, UpAxis up) {
-    surface.closed = false;
-    Imath::V3d area(0.0);
-    double total = 0.0;
-    for (const Imath::V3i& t : surface.triangles) {
-        const Imath::V3d a(surface.positions[t[0]]);
-        const Imath::V3d cross =
-            (Imath::V3d(surface.positions[t[1]]) - a).cross(Imath::V3d(surface.positions[t[2]]) - a);
-        area += cross;
-        total += cross.length();
-    }
-    if (!(area.length() > 0.1 * total))
-        return; // it looks all ways
-    const Frame set = uprightFrame(up);
-    const auto axes = [](const Imath::V3d& normal, const Imath::V3d& upward, Imath::V3d* frame) {
-        frame[0] = normal.normalized();
-        Imath::V3d side = upward.cross(frame[0]);
-        if (side.length() < 1e-3)
-            side = Imath::V3d(upward.y, upward.z, upward.x).cross(frame[0]);
-        frame[1] = side.normalized();
-        frame[2] = frame[0].cross(frame[1]);
-    };
-    const Imath::V3d upward(set.normal), front(-set.bitangent);
-    Imath::V3d from[3], to[3];
-    axes(area, upward, from);
-    axes(front + upward, upward, to);
-    const auto turn = [&](Imath::V3f& v) {
-        const Imath::V3d w(v);
-        v = Imath::V3f(to[0] * from[0].dot(w) + to[1] * from[1].dot(w) + to[2] * from[2].dot(w));
-    };
-    std::for_each(surface.positions.begin(), surface.positions.end(), turn);
-    std::for_each(surface.normals.begin(), surface.normals.end(), turn);
 }
 
 // Displacement is in the model's units, which a volume of very small voxels is not.
@@ -208,48 +166,6 @@ void writeMeshes(const Model& model, const std::string& name, const std::filesys
     }
     outputs.push_back(name + ".obj");
     outputs.push_back(name + "_limit.ply");
-}
-
-void writePicture(const LayerVolume& volume, const Model& model, const StackOptics& optics, const Options& options,
-                  const std::filesystem::path& file, Console& console) {
-    const ProgressStage stage(console, "render " + file.filename().string());
-    const StackOptics displayed = optics.in(ColourSpace::rec709); // whatever space the maps are in
-    const StackShader shader(volume, model.surface, displayed);
-    SurfaceMesh surface = displaced(model.surface, shader.vertexHeights());
-    if (model.region)
-        turnToViewer(surface, options.up);
-
-    const Imath::Box3f bounds = surface.bounds();
-    CameraView view = automaticView(surface, options.up);
-    if (options.azimuth)
-        view.azimuthDegrees = static_cast<float>(*options.azimuth);
-    if (options.elevation)
-        view.elevationDegrees = static_cast<float>(*options.elevation);
-    // The picture takes the object's proportions, within those of a photograph.
-    const Imath::V3f size = bounds.size();
-    const float height = options.up == UpAxis::y ? size.y : size.z;
-    const float depth = options.up == UpAxis::y ? size.z : size.y;
-    const float tilt = view.elevationDegrees * float(M_PI) / 180.f;
-    const float seenHeight = height * std::cos(tilt) + depth * std::sin(std::abs(tilt));
-    const float aspect = std::clamp(std::max(size.x, 0.5f * depth) / std::max(seenHeight, 1e-6f * size.x), 0.7f, 1.8f);
-    RenderOptions render_;
-    render_.width = aspect >= 1.f ? options.pictureSize : static_cast<int>(std::lround(options.pictureSize * aspect));
-    render_.height = aspect >= 1.f ? static_cast<int>(std::lround(options.pictureSize / aspect)) : options.pictureSize;
-    render_.samples = options.samples;
-
-    RenderScene scene;
-    scene.surface = &surface;
-    scene.up = options.up;
-    if (model.region) {
-        scene.ground = false;
-        scene.background = Imath::V3f(0.18f);
-    }
-    scene.material = [&](const SurfacePoint& point, const Imath::V3f&) { return shader.bsdf(point); };
-    const Camera camera = Camera::framed(surface.positions, view, float(render_.width) / float(render_.height));
-    const Lights lights = studioLights(options.up, view.azimuthDegrees);
-    const Rendering rendering = render(scene, camera, lights, render_, console);
-    writePng(displayImage(rendering.image), file,
-             {{"Software", "vdb-patina " PATINA_VERSION}, {"Description", volume.provenance.scriptName}});
 }
 
 } // namespace patina::tool

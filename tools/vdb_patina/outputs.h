@@ -1,5 +1,5 @@
 #pragma once
-// What several commands make from a volume and its model: maps, meshes, a picture.
+// What several commands make from a volume and its model: maps, meshes.
 
 #include "console.h"
 #include "export/bake.h"
@@ -31,9 +31,5 @@ BakeSummary writeMaps(const LayerVolume& volume, const Model& model, const Stack
 /// NAME.obj (control mesh) and NAME_limit.ply.
 void writeMeshes(const Model& model, const std::string& name, const std::filesystem::path& folder,
                  std::vector<std::string>& outputs, Console& console);
-
-/// A picture of the displaced surface, shaded by the volume's own stack.
-void writePicture(const LayerVolume& volume, const Model& model, const StackOptics& optics, const Options& options,
-                  const std::filesystem::path& file, Console& console);
 
 } // namespace patina::tool

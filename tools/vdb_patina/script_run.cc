@@ -1,6 +1,7 @@
 #include "script_run.h"
 
 #include "outputs.h"
+#include "picture.h"
 #include "report.h"
 
 #include "base/atomic_file.h"

@@ -4,9 +4,9 @@
 #include "base/hash.h"
 #include "operators/fields/accessibility.h"
 #include "operators/fields/field_grid.h"
-#include "operators/fields/surface_extraction.h"
 #include "operators/fields/wetness.h"
 #include "volume/band.h"
+#include "volume/interface_mesh.h"
 #include "volume/nest_grids.h"
 
 #include <fmt/format.h>
@@ -129,7 +129,8 @@ std::vector<float> FieldStore::gather(const LightDome& dome, const Compass& comp
         return run([&](const V3f& o, const V3f& d) { return scene_.whole->occluded(o, d, 0.f, far); });
     if (surface_.layer == 0 && !scene_.volume->grids().metal)
         return run([&](const V3f& o, const V3f& d) { return scene_.binding->occluded(o, d); });
-    const RayScene present = extractSurface(*scene_.volume, surface_.layer);
+    const SurfaceMesh mesh = interfaceMesh(*scene_.volume, surface_.layer);
+    const RayScene present(mesh.positions, mesh.triangles);
     return run([&](const V3f& o, const V3f& d) { return present.occluded(o, d, 0.f, far); });
 }
 

@@ -4,7 +4,8 @@
 #include "field_test_shapes.h"
 #include "operators/fields/sun_and_sky.h"
 #include "operators/fields/sun_position.h"
-#include "operators/fields/surface_extraction.h"
+#include "surface/ray_scene.h"
+#include "volume/interface_mesh.h"
 
 #include <gtest/gtest.h>
 
@@ -150,7 +151,8 @@ TEST(Exposure, TheFloorOfAVoxelisedWellSeesItsOpening) {
         },
         42);
     const SurfaceVoxels surface = findSurfaceVoxels(*volume, 0);
-    const RayScene rays = extractSurface(*volume, 0);
+    const SurfaceMesh mesh = interfaceMesh(*volume, 0);
+    const RayScene rays(mesh.positions, mesh.triangles);
     Compass compass = Compass::from(test::toLattice({0, 0, 1}), test::toLattice({0, 1, 0}));
     Progress progress;
     const auto values = gatherDome(

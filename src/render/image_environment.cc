@@ -1,0 +1,85 @@
+#include "render/image_environment.h"
+
+#include "base/errors.h"
+
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace patina {
+
+namespace {
+
+constexpr float pi = float(M_PI);
+
+float decodedSrgb(float c) {
+    return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
+}
+
+} // namespace
+
+ImageEnvironment::ImageEnvironment(Image panorama, UpAxis up, float turnDegrees, float strength)
+    : panorama_(std::move(panorama)), set_(uprightFrame(up, turnDegrees)), strength_(strength) {
+    if (panorama_.height < 2 || panorama_.width != 2 * panorama_.height || panorama_.channels < 3)
+        throw RunError("environment", fmt::format("the panorama has {} × {} pixels", panorama_.width, panorama_.height),
+                       "it must be twice as wide as high, in colour, in equal steps of azimuth and elevation");
+    if (!(strength >= 0.f) || !std::isfinite(strength))
+        throw RunError("environment", "its strength must be 0 or more");
+    for (int y = 0; y < panorama_.height; ++y)
+        for (int x = 0; x < panorama_.width; ++x) {
+            const Imath::V3f c = panorama_.rgb(x, y);
+            if (!(std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z) && c.x >= 0.f && c.y >= 0.f &&
+                  c.z >= 0.f))
+                throw RunError("environment",
+                               fmt::format("the panorama's pixel at column {}, row {} is negative or not finite", x, y),
+                               "mend the picture: light must be 0 or more");
+        }
+}
+
+int ImageEnvironment::looksPerCell() const {
+    // The tables' cells are 1.9 degrees wide; no pixel shall fall between two looks.
+    return std::clamp(panorama_.width / 192 + 1, 3, 16);
+}
+
+Imath::V3f ImageEnvironment::radiance(const Imath::V3f& direction) const {
+    const Imath::V3f d = set_.toLocal(direction);
+    // Ahead, away from the viewer, is +bitangent; to the viewer's right +tangent.
+    const float turn = std::atan2(d.x, d.y) / (2.f * pi) + 0.5f;
+    const float down = std::acos(std::clamp(d.z, -1.f, 1.f)) / pi;
+    const float x = turn * float(panorama_.width) - 0.5f, y = down * float(panorama_.height) - 0.5f;
+    const float left = std::floor(x), top = std::floor(y);
+    const float fx = x - left, fy = y - top;
+    const auto at = [&](int column, int row) {
+        const int width = panorama_.width;
+        return panorama_.rgb(((column % width) + width) % width, std::clamp(row, 0, panorama_.height - 1));
+    };
+    const int column = int(left), row = int(top);
+    const Imath::V3f above = at(column, row) * (1.f - fx) + at(column + 1, row) * fx;
+    const Imath::V3f below = at(column, row + 1) * (1.f - fx) + at(column + 1, row + 1) * fx;
+    return (above * (1.f - fy) + below * fy) * strength_;
+}
+
+Image readPanorama(const std::filesystem::path& path) {
+    const auto input = OIIO::ImageInput::open(path.string());
+    if (!input)
+        throw RunError(path.string(), "the panorama cannot be read: " + OIIO::geterror(),
+                       "give an OpenEXR or Radiance HDR picture");
+    const OIIO::ImageSpec& spec = input->spec();
+    if (spec.nchannels < 3)
+        throw RunError(path.string(), "the panorama has no colour");
+    if (std::int64_t(spec.width) * spec.height > std::int64_t(1) << 28)
+        throw RunError(path.string(), fmt::format("the panorama has {} × {} pixels", spec.width, spec.height),
+                       "8192 × 4096 are enough for any light");
+    Image image(spec.width, spec.height);
+    if (!input->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, image.pixels.data()))
+        throw RunError(path.string(), "the panorama cannot be read: " + input->geterror());
+    const bool encoded = spec.format == OIIO::TypeDesc::UINT8 || spec.format == OIIO::TypeDesc::UINT16;
+    if (encoded)
+        for (float& c : image.pixels)
+            c = decodedSrgb(c);
+    return image;
+}
+
+} // namespace patina

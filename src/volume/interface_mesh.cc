@@ -1,0 +1,88 @@
+#include "volume/interface_mesh.h"
+
+#include "base/errors.h"
+#include "volume/nest_grids.h"
+#include "volume/nest_sampler.h"
+
+#include <openvdb/tools/VolumeToMesh.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace patina {
+
+namespace {
+
+// Whether every edge is passed once in each direction.
+bool isClosed(const std::vector<Imath::V3i>& triangles) {
+    std::vector<std::pair<int, int>> edges;
+    edges.reserve(3 * triangles.size());
+    std::int64_t balance = 0;
+    for (const Imath::V3i& t : triangles)
+        for (int i = 0; i < 3; ++i) {
+            const int a = t[i], b = t[(i + 1) % 3];
+            edges.emplace_back(std::min(a, b), std::max(a, b));
+            balance += a < b ? 1 : -1;
+        }
+    if (balance != 0)
+        return false;
+    std::sort(edges.begin(), edges.end());
+    for (std::size_t i = 0; i < edges.size();) {
+        std::size_t end = i;
+        while (end < edges.size() && edges[end] == edges[i])
+            ++end;
+        if ((end - i) % 2 != 0)
+            return false;
+        i = end;
+    }
+    return true;
+}
+
+} // namespace
+
+SurfaceMesh interfaceMesh(const LayerVolume& volume, int layer) {
+    if (layer < 0 || layer > volume.layerCount())
+        throw RunError("volume", "it has no such interface", "ask for 0, the metal, up to the number of its layers");
+    const NestGrids& grids = volume.grids();
+    std::vector<openvdb::Vec3s> points;
+    std::vector<openvdb::Vec3I> triangles;
+    std::vector<openvdb::Vec4I> quads;
+    openvdb::tools::volumeToMesh(*grids.nest()[layer], points, triangles, quads, 0.0, 0.0);
+    if (triangles.empty() && quads.empty())
+        throw RunError("volume", "the interface crosses no voxel");
+
+    // In voxels of the lattice: a region's transform moves its grids into the model's coordinates.
+    const auto& transform = grids.base->transform();
+    const double voxelSize = volume.scale().voxelSize;
+    SurfaceMesh mesh;
+    mesh.positions.resize(points.size());
+    mesh.normals.resize(points.size());
+    const NestSampler sampler(grids);
+    tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t i) {
+        const openvdb::Vec3d index = transform.worldToIndex(points[i]);
+        const Imath::V3d at(index.x(), index.y(), index.z());
+        mesh.positions[i] = Imath::V3f(at * voxelSize);
+        Imath::V3d slope;
+        for (int axis = 0; axis < 3; ++axis) {
+            Imath::V3d half(0.0);
+            half[axis] = 0.5;
+            slope[axis] =
+                sampler.value(layer, sampler.locate(at + half)) - sampler.value(layer, sampler.locate(at - half));
+        }
+        mesh.normals[i] = slope.length() > 0.0 ? Imath::V3f(slope.normalized()) : Imath::V3f(0, 0, 1);
+    });
+    mesh.triangles.reserve(triangles.size() + 2 * quads.size());
+    // OpenVDB's are clockwise from outside.
+    for (const openvdb::Vec3I& t : triangles)
+        mesh.triangles.emplace_back(t[0], t[2], t[1]);
+    for (const openvdb::Vec4I& q : quads) {
+        mesh.triangles.emplace_back(q[0], q[2], q[1]);
+        mesh.triangles.emplace_back(q[0], q[3], q[2]);
+    }
+    mesh.closed = isClosed(mesh.triangles);
+    return mesh;
+}
+
+} // namespace patina
