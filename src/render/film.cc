@@ -91,4 +91,20 @@ Image readPng(const std::filesystem::path& path, ImageMetadata* metadata) {
     return image;
 }
 
+Image asRgb(const Image& picture) {
+    if (picture.channels == 3)
+        return picture;
+    Image rgb(picture.width, picture.height);
+    const int colours = picture.channels >= 3 ? 3 : 1;
+    const bool hasAlpha = picture.channels == 2 || picture.channels == 4;
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x) {
+            const float* from = picture.at(x, y);
+            const float alpha = hasAlpha ? from[colours] : 1.f;
+            for (int c = 0; c < 3; ++c)
+                rgb.at(x, y)[c] = alpha * from[std::min(c, colours - 1)] + (1.f - alpha);
+        }
+    return rgb;
+}
+
 } // namespace patina

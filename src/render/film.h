@@ -38,4 +38,7 @@ void writePng(const Image& encoded, const std::filesystem::path& path, const Ima
 /// \throws RunError when it cannot be read.
 Image readPng(const std::filesystem::path& path, ImageMetadata* metadata = nullptr);
 
+/// Any picture as R, G, B: grey ones threefold, transparent ones over white. Encoded in, encoded out.
+Image asRgb(const Image& picture);
+
 } // namespace patina

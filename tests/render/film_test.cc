@@ -110,5 +110,14 @@ TEST(ViewTransform, whatIsNotFiniteBecomesBlack) {
         EXPECT_EQ(v, 0.f);
 }
 
+TEST(Film, anyPictureBecomesRgbOverWhite) {
+    Image grey(1, 1, 1, 0.25f);
+    EXPECT_EQ(asRgb(grey).rgb(0, 0), Imath::V3f(0.25f));
+    Image glass(1, 1, 4);
+    const float half[] = {0.5f, 0.f, 1.f, 0.5f};
+    std::copy(half, half + 4, glass.at(0, 0));
+    EXPECT_EQ(asRgb(glass).rgb(0, 0), Imath::V3f(0.75f, 0.5f, 1.f));
+}
+
 } // namespace
 } // namespace patina

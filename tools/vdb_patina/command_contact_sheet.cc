@@ -30,7 +30,7 @@ void makeSheet(const Arguments& arguments, Console& console) {
                     "give one label for each picture, in their order");
     std::vector<LabelledImage> images;
     for (std::size_t i = 0; i < arguments.pictures.size(); ++i)
-        images.push_back({readPng(arguments.pictures[i]), arguments.labels.empty() ? "" : arguments.labels[i]});
+        images.push_back({asRgb(readPng(arguments.pictures[i])), arguments.labels.empty() ? "" : arguments.labels[i]});
     ContactSheetOptions options;
     options.columns = arguments.columns;
     options.title = arguments.title;
