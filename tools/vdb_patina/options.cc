@@ -198,8 +198,7 @@ void addRenderOptions(CLI::App& app, Options& options) {
         ->type_name("X")
         ->group("Picture");
     app.add_option("--camera", options.camera,
-                   "Degrees around the model from its front and above the horizon; distance from its middle in scene "
-                   "units (default: all of it in the picture); field of view, degrees (default 22)")
+                   "Degrees around the model and above the horizon, scene units from its middle, field of view")
         ->type_name("AZ,EL[,DISTANCE[,FOV]]")
         ->group(camera);
     app.add_option("--closeup", options.closeUp,
