@@ -1,8 +1,9 @@
 #pragma once
 // Points of a surface in blocks of 8³ voxels, ready to be searched. Includes OpenVDB: for sources only.
 
+#include "volume/grid_instances.h"
+
 #include <Imath/ImathVec.h>
-#include <openvdb/openvdb.h>
 
 #include <cstdint>
 #include <vector>

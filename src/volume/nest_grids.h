@@ -1,9 +1,8 @@
 #pragma once
 // The grids inside a LayerVolume, for sources of volume/, operators/ and export/ only: this header pulls OpenVDB in.
 
+#include "volume/grid_instances.h"
 #include "volume/layer_volume.h"
-
-#include <openvdb/openvdb.h>
 
 #include <map>
 #include <string>

@@ -1,10 +1,10 @@
 #include "volume/region_context.h"
 
 #include "base/errors.h"
+#include "volume/grid_instances.h"
 #include "volume/vdb_file.h"
 
 #include <fmt/format.h>
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>

@@ -3,9 +3,9 @@
 #include "base/errors.h"
 #include "volume/material_ids.h"
 #include "volume/nest_grids.h"
+#include "volume/unsigned_band.h"
 
 #include <fmt/format.h>
-#include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/Prune.h>
 #include <tbb/parallel_for.h>
 
@@ -22,30 +22,6 @@ using Imath::V3f;
 using Imath::V3i;
 
 namespace {
-
-class TriangleAdapter {
-  public:
-    TriangleAdapter(const ClosedSurface& surface, double voxelSize) : surface_(surface), scale_(1.0 / voxelSize) {}
-
-    std::size_t polygonCount() const { return surface_.triangles.size(); }
-    std::size_t pointCount() const { return surface_.positions.size(); }
-    std::size_t vertexCount(std::size_t) const { return 3; }
-    void getIndexSpacePoint(std::size_t polygon, std::size_t vertex, openvdb::Vec3d& position) const {
-        const V3f& p = surface_.positions[surface_.triangles[polygon][static_cast<int>(vertex)]];
-        position = openvdb::Vec3d(p.x, p.y, p.z) * scale_;
-    }
-
-  private:
-    const ClosedSurface& surface_;
-    double scale_;
-};
-
-struct Interrupter {
-    Progress& progress;
-    void start(const char* = nullptr) {}
-    void end() {}
-    bool wasInterrupted(int = -1) { return progress.cancelled(); }
-};
 
 // Crossings of a ray from the point to infinity: those that leave the metal minus those that enter it.
 int windingAlong(const RayScene& whole, const V3f& origin, const V3f& direction) {
@@ -239,15 +215,10 @@ void settleSides(SurfaceMesh& piece, const RayScene& whole, double voxelSize) {
 LayerVolume voxelizeRegion(const ClosedSurface& piece, const Region& region, const VoxelizeOptions& options,
                            Progress& progress) {
     const double voxelSize = options.scale.voxelSize;
-    const auto transform = openvdb::math::Transform::createLinearTransform(voxelSize);
-    Interrupter interrupter{progress};
-    const TriangleAdapter adapter(piece, voxelSize);
     const double widest = std::max(options.exteriorBand, options.interiorBand) + 1.0;
     auto grids = std::make_unique<NestGrids>();
     // The library finds the band; signs and distances are ours.
-    grids->base = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
-        interrupter, adapter, *transform, static_cast<float>(widest), static_cast<float>(widest),
-        openvdb::tools::UNSIGNED_DISTANCE_FIELD);
+    grids->base = unsignedBand(piece, voxelSize, static_cast<float>(widest), progress);
     progress.checkpoint();
     grids->interiorBand = options.interiorBand;
     grids->exteriorBand = options.exteriorBand;

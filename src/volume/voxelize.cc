@@ -4,9 +4,9 @@
 #include "volume/inside_signs.h"
 #include "volume/material_ids.h"
 #include "volume/nest_grids.h"
+#include "volume/unsigned_band.h"
 
 #include <fmt/format.h>
-#include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/Prune.h>
 #include <openvdb/tools/SignedFloodFill.h>
 #include <tbb/blocked_range.h>
@@ -19,44 +19,16 @@ namespace patina {
 
 namespace {
 
-// The triangles in the voxels' own coordinates, as OpenVDB's voxeliser reads them.
-class TriangleAdapter {
-  public:
-    TriangleAdapter(const ClosedSurface& surface, double voxelSize) : surface_(surface), scale_(1.0 / voxelSize) {}
-
-    std::size_t polygonCount() const { return surface_.triangles.size(); }
-    std::size_t pointCount() const { return surface_.positions.size(); }
-    std::size_t vertexCount(std::size_t) const { return 3; }
-    void getIndexSpacePoint(std::size_t polygon, std::size_t vertex, openvdb::Vec3d& position) const {
-        const Imath::V3f& p = surface_.positions[surface_.triangles[polygon][static_cast<int>(vertex)]];
-        position = openvdb::Vec3d(p.x, p.y, p.z) * scale_;
-    }
-
-  private:
-    const ClosedSurface& surface_;
-    double scale_;
-};
-
-// OpenVDB's idea of cancelling, in terms of ours.
-struct Interrupter {
-    Progress& progress;
-    void start(const char* = nullptr) {}
-    void end() {}
-    bool wasInterrupted(int = -1) { return progress.cancelled(); }
-};
-
 // The library's own signs take for metal whatever the outside cannot reach, cavities too. So the band is made without
 // signs, and gets those of the triangles' winding.
-openvdb::FloatGrid::Ptr voxelizeByWinding(const TriangleAdapter& adapter, const WindingNumber& winding,
-                                          const VoxelizeOptions& options, Interrupter& interrupter) {
+openvdb::FloatGrid::Ptr voxelizeByWinding(const ClosedSurface& surface, const WindingNumber& winding,
+                                          const VoxelizeOptions& options, Progress& progress) {
     const double voxelSize = options.scale.voxelSize;
     const auto outer = static_cast<float>(options.exteriorBand * voxelSize);
     const auto inner = static_cast<float>(options.interiorBand * voxelSize);
     const auto widest = static_cast<float>(std::max(options.exteriorBand, options.interiorBand));
-    const auto transform = openvdb::math::Transform::createLinearTransform(voxelSize);
-    openvdb::FloatGrid::Ptr grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
-        interrupter, adapter, *transform, widest, widest, openvdb::tools::UNSIGNED_DISTANCE_FIELD);
-    interrupter.progress.checkpoint();
+    openvdb::FloatGrid::Ptr grid = unsignedBand(surface, voxelSize, widest, progress);
+    progress.checkpoint();
     SideGroups(*grid, voxelSize).apply(winding, *grid);
     const auto leaves = leavesOf(grid->tree());
     tbb::parallel_for(std::size_t(0), leaves.size(), [&](std::size_t n) {
@@ -76,11 +48,9 @@ openvdb::FloatGrid::Ptr voxelizeByWinding(const TriangleAdapter& adapter, const 
 
 LayerVolume voxelize(const ClosedSurface& surface, const VoxelizeOptions& options, Progress& progress) {
     const double voxelSize = options.scale.voxelSize;
-    const TriangleAdapter adapter(surface, voxelSize);
-    Interrupter interrupter{progress};
     auto grids = std::make_unique<NestGrids>();
     const WindingNumber winding(surface.positions, surface.triangles);
-    grids->base = voxelizeByWinding(adapter, winding, options, interrupter);
+    grids->base = voxelizeByWinding(surface, winding, options, progress);
     progress.checkpoint();
     grids->interiorBand = options.interiorBand;
     grids->exteriorBand = options.exteriorBand;

@@ -1,7 +1,7 @@
 #pragma once
 // The volume within a level set given as a dense field: a meter whose own error is far below that of a sum over voxels.
 
-#include <openvdb/openvdb.h>
+#include "volume/grid_instances.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,6 +3,8 @@
 
 #include "options.h"
 
+#include <CLI/CLI.hpp>
+
 #include <functional>
 
 namespace patina::tool {

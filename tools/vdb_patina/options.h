@@ -3,12 +3,15 @@
 
 #include "render/frame.h"
 
-#include <CLI/CLI.hpp>
-
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
 
 namespace patina::tool {
 

@@ -1,0 +1,3 @@
+#include "volume/grid_instances.h"
+
+PATINA_GRID_INSTANCES(, FloatTree);
