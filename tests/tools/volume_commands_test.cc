@@ -92,6 +92,12 @@ TEST_F(VolumeCommands, BakeGivesTheMapsOfTheRun) {
     for (const char* map : {"displacement.exr", "thickness_02_soot.exr", "diffuse.exr", "normal.exr"})
         EXPECT_EQ(readFile(folder.path() / "baked" / map), readFile(folder.path() / "ball" / map)) << map;
 
+    // Without a model: the mesh that the run left beside the volume.
+    const Outcome beside = run({"bake", "ball/ball.vdb", "-o", "beside", "--resolution", "64"});
+    ASSERT_EQ(beside.exitCode, 0) << beside.err;
+    EXPECT_EQ(filesIn(folder.path() / "beside"), expected);
+    EXPECT_EQ(readFile(folder.path() / "beside/displacement.exr"), readFile(folder.path() / "ball/displacement.exr"));
+
     const Outcome other = run({"bake", "ball/ball.vdb", "strip", "-o", "other", "--resolution", "64"});
     EXPECT_EQ(other.exitCode, 4);
     EXPECT_THAT(other.err, HasSubstr("strip: is not the model that 'ball/ball.vdb' was made from ('sphere')"));

@@ -1,4 +1,4 @@
-// vdb-patina bake VOLUME MODEL
+// vdb-patina bake VOLUME [MODEL]
 
 #include "commands.h"
 #include "console.h"
@@ -35,7 +35,8 @@ void addBakeCommand(CLI::App& app, Options& options, Action& action) {
     CLI::App* command = app.add_subcommand("bake", "Maps and subdivided mesh from a volume");
     auto arguments = std::make_shared<Arguments>();
     command->add_option("VOLUME", arguments->volume, "A .vdb that `run` wrote")->required();
-    command->add_option("MODEL", arguments->model, "The model it was made from")->required();
+    command->add_option("MODEL", arguments->model,
+                        "The model it was made from (default: the .obj that `run` wrote beside it)");
     addGeneralOptions(*command, options);
     addOutputOption(*command, options);
     addModelOptions(*command, options);
