@@ -2,6 +2,7 @@
 
 #include "operators/growth/grow.h"
 #include "operators/growth/growth_map.h"
+#include "operators/growth/nest_relief.h"
 #include "operators/maps/combined_map.h"
 #include "operators/maps/context_map.h"
 #include "operators/maps/geometry_map.h"
@@ -23,6 +24,8 @@ namespace {
 
 // INTERFACE: the default particle is 1/512 of the whole model's longest side.
 constexpr double cellsPerLongestSide = 512.0;
+// The voxel of a preview of 256 along the longest side, in such cells.
+constexpr double grainCells = 2.0;
 
 double applyBinary(const std::string& op, double a, double b) {
     if (op == "+")
@@ -221,8 +224,19 @@ std::vector<float> MapBuilder::perCell(const GrowthLattice& lattice, const Thick
 }
 
 std::vector<float> MapBuilder::arrivalFrom(const GrowthLattice& lattice, const Imath::V3d& direction) const {
-    // A parallel stream lands in proportion to the cosine, and not where the object itself is in the way.
+    // A parallel stream lands in proportion to the cosine, and not where the object itself is in the way, or what lies
+    // on it by now.
     std::vector<float> values(lattice.size());
+    std::optional<NestShadow> shadow;
+    if (context_.volume && context_.volume->layerCount() > 0)
+        shadow.emplace(*context_.volume);
+    const Imath::V3d origin = context_.region ? context_.region->region().origin() : Imath::V3d(0.0);
+    const double magnification = context_.region ? context_.region->region().magnification : 1.0;
+    const auto isInNestsShadow = [&](std::size_t i) {
+        return shadow && shadow->falls((Imath::V3d(lattice.centres[i]) - origin) * magnification,
+                                       Imath::V3d(lattice.normals[i]), direction,
+                                       0.5 * lattice.cell * magnification);
+    };
     const Imath::V3f towards(direction);
     const float clearance = static_cast<float>(0.5 * lattice.cell);
     const auto isOccluded = [&](const Imath::V3f& start) {
@@ -233,7 +247,7 @@ std::vector<float> MapBuilder::arrivalFrom(const GrowthLattice& lattice, const I
     };
     tbb::parallel_for(std::size_t(0), values.size(), [&](std::size_t i) {
         const float cosine = lattice.normals[i].dot(towards);
-        if (cosine > 0.f && !isOccluded(lattice.centres[i] + lattice.normals[i] * clearance))
+        if (cosine > 0.f && !isOccluded(lattice.centres[i] + lattice.normals[i] * clearance) && !isInNestsShadow(i))
             values[i] = cosine;
     });
     return values;
@@ -285,8 +299,8 @@ MapBuilder::GrowthSetup MapBuilder::setUpGrowth(const GrowthCall& call, double c
 }
 
 ThicknessMapPtr MapBuilder::buildGrowth(const GrowthCall& call, Progress& progress) {
-    const auto [cells, options] =
-        setUpGrowth(call, cellOf(call, context_.longestSide / cellsPerLongestSide), progress);
+    const double byDefault = context_.longestSide / cellsPerLongestSide;
+    const auto [cells, options] = setUpGrowth(call, cellOf(call, byDefault), progress);
     GrowthPattern pattern = grow(cells, options, context_.seed, call.label, &progress);
     statistics_.push_back(pattern.statistics);
     if (call.since > 0) {
@@ -297,7 +311,11 @@ ThicknessMapPtr MapBuilder::buildGrowth(const GrowthCall& call, Progress& progre
         std::transform(pattern.factor.begin(), pattern.factor.end(), before.factor.begin(), pattern.factor.begin(),
                        [](float now, float then) { return std::max(0.f, now - then); });
     }
-    return std::make_shared<GrowthMap>(cells, pattern.factor, context_.voxelSize);
+    // Grains nobody chose are no finer than a preview shows them: it and the final have one look. What the script
+    // gave is shown as finely as voxels can.
+    const double grain = call.cellUm ? cells.cell : grainCells * cells.cell;
+    const double shift = 0.25 * cells.cell * std::clamp(2.0 * context_.voxelSize / grain - 1.0, 0.0, 1.0);
+    return std::make_shared<GrowthMap>(cells, pattern.factor, readingWidth(grain, context_.voxelSize), shift);
 }
 
 std::optional<MapBuilder::CoatGrowth> MapBuilder::buildVoxelGrowth(const Expression& expression, double thicknessUm,
@@ -319,13 +337,17 @@ std::optional<MapBuilder::CoatGrowth> MapBuilder::buildVoxelGrowth(const Express
     }
     if (!call || !growsInVoxels(scale, thicknessUm, *growthModelNamed(call->model)))
         return {};
-    auto [cells, options] = setUpGrowth(*call, cellOf(*call, context_.voxelSize), progress);
+    // A voxel where the script says nothing (INTERFACE), but of a whole model no finer than on surface cells.
+    const double coarse = context_.longestSide / cellsPerLongestSide;
+    const bool voxels = context_.region || coarse < 1.01 * context_.voxelSize;
+    const double byDefault = voxels ? context_.voxelSize : coarse;
+    auto [cells, options] = setUpGrowth(*call, cellOf(*call, byDefault), progress);
     VoxelGrowth growth;
     growth.options = std::move(options);
     growth.since = call->since;
     growth.seed = context_.seed;
     growth.label = call->label;
-    growth.cubes = !call->cellUm;
+    growth.cubes = !call->cellUm && voxels;
     if (context_.region) {
         growth.origin = context_.region->region().origin();
         growth.magnification = context_.region->region().magnification;

@@ -45,7 +45,7 @@ class MapBuilder {
 
     /// What a coat of this map is where it grows in the voxel lattice: the first growth among the map's factors, which
     /// the others multiply. Nothing where the map is no such product, or the coat too thin for voxels (growsInVoxels()).
-    /// Cells are voxels where the script gives no size.
+    /// Where the script gives no size, cells are voxels, but of a whole model no finer than 1/512 of its longest side.
     struct CoatGrowth {
         const GrowthLattice& lattice;
         VoxelGrowth growth;

@@ -3,15 +3,20 @@
 #include "operators/growth/growth_run.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace patina {
 
 namespace {
 
+// An even coat below is often a half or a whole number of levels thick: rounding must not make steps of its last bits.
+constexpr float betweenLevels = 0.137f;
+
 template <bool notesPlaces>
 struct BallisticRule {
     const std::vector<std::array<int, 4>>& neighbours;
-    std::vector<std::int32_t>& height;
+    std::vector<std::int32_t>& height; ///< relief and particles
+    const std::vector<std::int32_t>& relief;
     LevelOccupancy* occupancy;
     std::uint64_t particles = 0;
 
@@ -24,15 +29,16 @@ struct BallisticRule {
         const auto& n = neighbours[cell];
         height[cell] = std::max({height[cell] + 1, height[n[0]], height[n[1]], height[n[2]], height[n[3]]});
         if (notesPlaces)
-            occupancy->add(cell, height[cell]);
+            occupancy->add(cell, height[cell] - relief[cell]);
         ++particles;
     }
 };
 
 template <bool notesPlaces>
-std::uint64_t deposit(const GrowthRun& run, const ArrivalClock& clock, std::vector<std::int32_t>& height) {
+std::uint64_t deposit(const GrowthRun& run, const ArrivalClock& clock, std::vector<std::int32_t>& height,
+                      const std::vector<std::int32_t>& relief) {
     const auto neighbours = closedNeighbours(run.lattice);
-    BallisticRule<notesPlaces> rule{neighbours, height, run.occupancy};
+    BallisticRule<notesPlaces> rule{neighbours, height, relief, run.occupancy};
     followArrivals(clock, run.age, run.progress, rule);
     return rule.particles;
 }
@@ -42,10 +48,16 @@ std::uint64_t deposit(const GrowthRun& run, const ArrivalClock& clock, std::vect
 GrownHeights growBallisticDeposition(const GrowthRun& run) {
     const ArrivalClock clock(run.lattice, run.random("arrivals"), run.random("thinning"), ArrivalClock::Rate::perCell,
                              run.options.arrival);
-    std::vector<std::int32_t> height(run.lattice.size(), 0);
+    std::vector<std::int32_t> relief(run.lattice.size(), 0);
+    for (std::size_t i = 0; i < run.options.relief.size(); ++i)
+        relief[i] = static_cast<std::int32_t>(std::lround(run.options.relief[i] + betweenLevels));
+    std::vector<std::int32_t> height = relief;
     GrownHeights grown;
-    grown.particles = run.occupancy ? deposit<true>(run, clock, height) : deposit<false>(run, clock, height);
-    grown.height.assign(height.begin(), height.end());
+    grown.particles =
+        run.occupancy ? deposit<true>(run, clock, height, relief) : deposit<false>(run, clock, height, relief);
+    grown.height.resize(height.size());
+    for (std::size_t i = 0; i < height.size(); ++i)
+        grown.height[i] = static_cast<float>(height[i] - relief[i]);
     // Each particle fills its cell for one layer, and where it lands does not depend on the cell's area.
     double area = 0.0;
     for (const float a : run.lattice.areas)

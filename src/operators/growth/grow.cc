@@ -29,7 +29,7 @@ void checkOptions(const GrowthLattice& lattice, const GrowthOptions& options) {
     const auto fits = [&](const std::vector<float>& values) {
         return values.empty() || values.size() == lattice.size();
     };
-    check(fits(options.arrival) && fits(options.blocked), "a map that does not fit the lattice",
+    check(fits(options.arrival) && fits(options.blocked) && fits(options.relief), "a map that does not fit the lattice",
           "give one value per cell");
     for (const int cell : options.seedCells)
         check(cell >= 0 && std::size_t(cell) < lattice.size(), "a seed cell outside the lattice", "");
@@ -79,6 +79,7 @@ GrowthScale expectedScale(const GrowthOptions& given) {
     GrowthOptions options = given;
     options.arrival.clear();
     options.blocked.clear();
+    options.relief.clear();
     options.seedCells.clear();
     if (options.ofFull)
         options.step = options.total;
@@ -139,7 +140,7 @@ GrowthPattern grow(const GrowthLattice& lattice, const GrowthOptions& options, s
 }
 
 GrownParticles growParticles(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
-                             std::string_view label, Progress* progress) {
+                             std::string_view label, Progress* progress, double since) {
     checkOptions(lattice, options);
     check(options.model == GrowthModel::ballisticDeposition, "only ballistic layers are known particle by particle",
           "use BD");
@@ -147,6 +148,16 @@ GrownParticles growParticles(const GrowthLattice& lattice, const GrowthOptions& 
     particles.occupancy = LevelOccupancy(lattice.size());
     GrownHeights grown =
         runModel({lattice, options, options.age(), seed, label, progress, &particles.occupancy});
+    if (since > 0.0) {
+        GrowthOptions earlier = options;
+        earlier.step = since;
+        GrownHeights before = runModel({lattice, earlier, earlier.age(), seed, label, progress, nullptr});
+        grown.particles -= before.particles;
+        grown.solid -= before.solid;
+        for (std::size_t i = 0; i < grown.height.size(); ++i)
+            grown.height[i] -= before.height[i];
+        particles.foot = std::move(before.height);
+    }
     particles.statistics = measure(lattice, grown);
     particles.height = std::move(grown.height);
     return particles;

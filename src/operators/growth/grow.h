@@ -44,14 +44,17 @@ std::vector<float> growHeights(const GrowthLattice& lattice, const GrowthOptions
 
 /// A ballistic layer particle by particle.
 struct GrownParticles {
-    std::vector<float> height; ///< of the envelope, levels
-    LevelOccupancy occupancy;  ///< levels that particles fill
+    std::vector<float> height; ///< of the envelope, levels above `foot`
+    std::vector<float> foot;   ///< level of the history on which what is asked for begins; empty: 0
+    LevelOccupancy occupancy;  ///< levels that particles fill, those below `foot` included
     GrowthStatistics statistics;
 };
 
-/// The history of grow() for BD, with the place of every particle. \throws RunError for another model; as grow()
+/// The history of grow() for BD, with the place of every particle. `since` is an earlier step of it (below
+/// options.step): only what has grown from then on counts, each column standing on what it had grown before.
+/// \throws RunError for another model; as grow()
 GrownParticles growParticles(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
-                             std::string_view label, Progress* progress = nullptr);
+                             std::string_view label, Progress* progress = nullptr, double since = 0.0);
 
 /// Mean and deviation by which factors are made, at the age of the step, or of the last step where options.ofFull.
 /// In closed form for RD, otherwise of the same model on a reference plane with a key of its own: never of the object.

@@ -28,6 +28,7 @@ struct Entry {
 struct GrowthMap::Index {
     double cell = 1.0;
     double radius = 1.0; ///< half width of the tents, cells
+    float shift = 0.f;   ///< cells
     double side = 4.0;
     std::vector<Entry> entries;
     struct Cube {
@@ -67,12 +68,19 @@ struct GrowthMap::Index {
     }
 };
 
-GrowthMap::GrowthMap(const GrowthLattice& lattice, const std::vector<float>& values, double filterWidth) {
+double readingWidth(double grain, double pitch) {
+    const double x = grain > 0.0 ? pitch / grain : 0.0;
+    return x <= 0.5 ? grain : x <= 1.0 ? grain * (1.25 - 0.5 * x) : 0.75 * pitch;
+}
+
+GrowthMap::GrowthMap(const GrowthLattice& lattice, const std::vector<float>& values, double filterWidth,
+                     double shift) {
     if (values.size() != lattice.size())
         throw RunError("growth map", "a growth map needs one value per cell of its lattice");
     auto index = std::make_unique<Index>();
     index->cell = lattice.cell;
-    index->radius = std::max(1.0, filterWidth / lattice.cell);
+    index->radius = filterWidth > 0.0 ? std::max(0.75, filterWidth / lattice.cell) : 1.0;
+    index->shift = static_cast<float>(shift / lattice.cell);
     index->side = std::max(4.0, index->radius);
 
     std::vector<std::pair<Imath::V3i, std::uint32_t>> order(lattice.size());
@@ -119,14 +127,15 @@ double GrowthMap::value(const MapPoint& point) const {
     const Imath::V3d position = point.position / index.cell;
     if (!(position.length2() < 1e18)) // not a number, or beyond what cubes can count
         return 0.0;
-    const Imath::V3f origin(position), normal(point.normal);
+    const Imath::V3f origin(position), normal(point.normal), shift(index.shift);
     const float inverse = static_cast<float>(1.0 / index.radius);
     double weights = 0.0, sum = 0.0;
     // Across one tangential tent a surface within 55 degrees of its column climbs at most about 1.4 of it.
-    index.visitAround(position, 1.5 * index.radius, [&](const Entry& entry) {
+    index.visitAround(position, 1.5 * index.radius + std::abs(index.shift), [&](const Entry& entry) {
         const Imath::V3f d = origin - entry.centre;
-        const float tents[3] = {1.f - std::abs(d.x) * inverse, 1.f - std::abs(d.y) * inverse,
-                                1.f - std::abs(d.z) * inverse};
+        const Imath::V3f at = d + shift;
+        const float tents[3] = {1.f - std::abs(at.x) * inverse, 1.f - std::abs(at.y) * inverse,
+                                1.f - std::abs(at.z) * inverse};
         const float tentA = tents[entry.axis == 0], tentB = tents[2 - (entry.axis == 2)];
         if (tentA <= 0.f || tentB <= 0.f)
             return;

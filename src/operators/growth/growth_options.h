@@ -47,6 +47,7 @@ struct GrowthOptions {
 
     std::vector<float> arrival; ///< per cell, 0…1: fraction of the particles that arrive; empty: all
     std::vector<float> blocked; ///< per cell, 0…1: in place of blockedFraction; empty: that
+    std::vector<float> relief;  ///< per cell, levels: how high what is there already stands; RDR and BD see it; empty: flat
     std::vector<int> seedCells; ///< DPD: cells seeded at the start besides the random ones
 
     double age() const { return growthAge(rate, step, total); }

@@ -17,7 +17,7 @@ namespace {
 struct RelaxationRule {
     const std::vector<std::array<int, 4>>& neighbours;
     const std::vector<float>& thicknessPerParticle;
-    const std::vector<float>& offset; ///< 0 … 1, per cell
+    const std::vector<float>& offset; ///< 0 … 1, per cell, and what relief there is
     std::vector<std::uint32_t>& level;
     std::vector<std::uint32_t>& count;
     int reach;
@@ -115,9 +115,11 @@ GrownHeights growRelaxation(const GrowthRun& run) {
         const Imath::V3i& key = lattice.keys[i];
         // Below 1 in single precision, too.
         offset[i] = float(offsets.words(0, key.x, key.y, key.z)[0] >> 8) / float(1 << 24);
+        if (!run.options.relief.empty())
+            offset[i] += std::max(0.f, run.options.relief[i]);
     }
     GrownHeights grown;
-    std::vector<std::uint32_t> count(lattice.size(), 0), level(lattice.size(), 0);
+    std::vector<std::uint32_t> count(lattice.size(), 0), level(offset.begin(), offset.end());
     RelaxationRule rule{neighbours, thickness, offset, level, count, run.options.reach, 0, {}, {}, 0};
     if (run.options.reach > 1)
         rule.mark.assign(lattice.size(), 0);

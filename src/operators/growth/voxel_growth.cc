@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "operators/growth/cell_lookup.h"
+#include "operators/growth/nest_relief.h"
 #include "operators/growth/voxel_interface.h"
 #include "volume/band.h"
 #include "volume/material_ids.h"
@@ -16,12 +17,14 @@ namespace patina {
 
 namespace {
 
-constexpr float tie = 1e-3f; // of a voxel
+constexpr float tie = 1e-3f;            // of a voxel
+constexpr double thinnestLevel = 0.0625; // of a voxel: no one sees finer ones, and each takes memory
 
 /// What stands on each cell: compact columns, or levels with pores.
 struct Columns {
     std::vector<float> height;      ///< end of the (outermost) solid, voxels
     std::vector<float> levelVoxels; ///< porous: thickness of a level, per cell
+    std::vector<float> foot;        ///< porous: the level of the history on which the column begins; empty: 0
     LevelOccupancy occupancy;
     bool porous = false;
 
@@ -39,7 +42,8 @@ struct Columns {
         if (phi <= 0.f || !(thickness > 0.f))
             return phi; // metal and older layers are one solid level
         const float level = std::ceil((phi - tie) / thickness);
-        return occupancy.holds(i, static_cast<std::int64_t>(level))
+        const auto below = static_cast<std::int64_t>(foot.empty() ? 0.f : foot[i]);
+        return occupancy.holds(i, below + static_cast<std::int64_t>(level))
                    ? std::min(0.f, phi - level * thickness)
                    : std::max(tie, phi - (level - 1.f) * thickness);
     }
@@ -47,6 +51,18 @@ struct Columns {
 
 double factorAt(const VoxelGrowth& growth, std::size_t cell) {
     return growth.factor.empty() ? 1.0 : std::clamp(double(growth.factor[cell]), 0.0, 1.0);
+}
+
+/// The same growth, told how high the nest stands above the model (DESIGN: particles see the relief that is there).
+VoxelGrowth withRelief(const Workpiece& work, const GrowthLattice& lattice, const VoxelGrowth& growth,
+                       double levelVoxels) {
+    VoxelGrowth onRelief = growth;
+    if (work.volume.layerCount() == 0 || !(levelVoxels > 0.0))
+        return onRelief;
+    onRelief.options.relief = nestHeights(work.volume, lattice, growth.origin, growth.magnification);
+    for (float& height : onRelief.options.relief)
+        height = static_cast<float>(height / (levelVoxels * work.volume.scale().voxelSize));
+    return onRelief;
 }
 
 Columns compactColumns(const GrowthLattice& lattice, const VoxelGrowth& growth, double thicknessVoxels,
@@ -76,10 +92,9 @@ Columns porousColumns(const GrowthLattice& lattice, const VoxelGrowth& growth, c
     options.rate = GrowthRate::linear;
     options.step = levels.age;
     options.total = std::max(levels.age, 1e-9);
-    // What has grown since a step lies on what had grown before: a history of its own.
-    const std::string label = growth.since > 0.0 ? growth.label + "/since" : growth.label;
-    GrownParticles grown = growParticles(lattice, options, growth.seed, label, &progress);
+    GrownParticles grown = growParticles(lattice, options, growth.seed, growth.label, &progress, levels.since);
     report.statistics = grown.statistics;
+    columns.foot = std::move(grown.foot);
     columns.occupancy = std::move(grown.occupancy);
     columns.height.resize(lattice.size());
     columns.levelVoxels.resize(lattice.size());
@@ -143,17 +158,19 @@ LevelScale ballisticLevels(const VoxelGrowth& growth, double thicknessVoxels, do
         at.step = step;
         return step > 0.0 ? expectedScale(at).mean : 0.0;
     };
-    const double mean = (growth.options.ofFull ? meanAt(growth.options.step) : full.mean) - meanAt(growth.since);
-    const double solid = thicknessVoxels * mean / full.top();
-    if (!(solid > 0.0))
+    const GrowthOptions& options = growth.options;
+    const double perMean = thicknessVoxels / full.top();
+    const double solid = perMean * (options.ofFull ? meanAt(options.step) : full.mean);
+    const double before = perMean * meanAt(growth.since);
+    if (!(solid > before))
         return {};
-    if (growth.cubes) {
-        const double level = std::max(1.0, cellVoxels);
-        return {solid / level, level};
+    double level = std::max(1.0, cellVoxels);
+    if (!growth.cubes) {
+        // One thickness for the whole history: that of the step at which the pattern is normalised.
+        const double age = options.ofFull ? growthAge(options.rate, options.total, options.total) : options.age();
+        level = std::max(thinnestLevel, perMean * full.mean / age);
     }
-    const double age = growth.options.age() - growthAge(growth.options.rate, growth.since, growth.options.total);
-    const double level = std::max(1.0, solid / age);
-    return {solid / level, level};
+    return {solid / level, before / level, level};
 }
 
 double highestVoxelGrowth(const GrowthOptions& options, double since, double thicknessVoxels,
@@ -169,8 +186,9 @@ double highestVoxelGrowth(const GrowthOptions& options, double since, double thi
     const double top = mean(normal) + 3.0 * sigma(normal);
     if (!(top > 0.0))
         return thicknessVoxels;
-    const double solid = thicknessVoxels * std::min(1.0, (mean(now) - mean(ageAt(since))) / top);
-    const double level = cellVoxels ? std::max(1.0, solid / std::max(1e-9, now - ageAt(since))) : 1.0;
+    const double perMean = thicknessVoxels / top;
+    const double solid = std::min(thicknessVoxels, perMean * (mean(now) - mean(ageAt(since))));
+    const double level = cellVoxels ? std::max(thinnestLevel, perMean * mean(normal) / normal) : 1.0;
     const double age = solid / level;
     return std::max(thicknessVoxels, level * (3.334 * age + 8.0 + 0.12 * age));
 }
@@ -191,11 +209,15 @@ VoxelGrowthReport coatByVoxelGrowth(Workpiece& work, const std::string& material
         const LevelScale levels = ballisticLevels(
             growth, thicknessVoxels, lattice.cell * growth.magnification / scale.voxelSize);
         levelVoxels = levels.levelVoxels;
-        columns = porousColumns(lattice, growth, levels, report, progress);
+        columns = porousColumns(lattice, withRelief(work, lattice, growth, levelVoxels), levels, report, progress);
     } else {
         const double top = expectedScale(growth.options).top();
         levelVoxels = top > 0.0 ? thicknessVoxels / top : 0.0;
-        columns = compactColumns(lattice, growth, thicknessVoxels, report, progress);
+        columns = compactColumns(lattice,
+                                 growth.options.model == GrowthModel::relaxation
+                                     ? withRelief(work, lattice, growth, levelVoxels)
+                                     : growth,
+                                 thicknessVoxels, report, progress);
     }
     report.levelUm = levelVoxels / scale.voxelsPerUm();
     float highest = 0.f;

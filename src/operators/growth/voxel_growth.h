@@ -24,7 +24,7 @@ bool growsInVoxels(const VolumeScale& scale, double thicknessUm, GrowthModel mod
 /// One coat's growth.
 struct VoxelGrowth {
     GrowthOptions options;
-    double since = 0.0; ///< only what has grown since this step; needs options.ofFull
+    double since = 0.0; ///< only what has grown since this step of the same history; needs options.ofFull
     std::uint64_t seed = 0;
     std::string label;
     /// The script gave no size of a particle: those of BD are then cubes of one cell, as many as make up the thickness.
@@ -42,14 +42,16 @@ struct VoxelGrowthReport {
 
 /// Levels (particles above each other) and how thick they are.
 struct LevelScale {
-    double age = 0.0;         ///< monolayers that arrive
+    double age = 0.0;         ///< monolayers of the history at the step
+    double since = 0.0;       ///< those that had arrived before; the layer is what lies between
     double levelVoxels = 0.0; ///< thickness of a level as drawn
 };
 
 /// How a coat of BD of a thickness (voxels as drawn; the largest, as coat() understands it) is made of particles of
 /// `cellVoxels`. Solid per area is what it is on surface cells: thickness * mean / (mean + 3 sigma) of the model's
 /// height, for cubes as that many monolayers of cells, otherwise as the monolayers of the step, each as thick as it
-/// takes, but never flatter than a voxel (then fewer arrive).
+/// takes, whatever the voxels (but no thinner than 1/16 of one; then fewer arrive). Where levels are thinner than voxels
+/// a voxel takes the state of the level its centre lies in.
 LevelScale ballisticLevels(const VoxelGrowth& growth, double thicknessVoxels, double cellVoxels);
 
 /// About how high a coat's grown layer will stand at its highest, voxels: never lower than the thickness. BD's pores lift
@@ -64,7 +66,8 @@ double highestVoxelGrowth(const GrowthOptions& options, double since, double thi
 /// The lattice of particles is aligned with the surface: a column stands on each surface cell, levels are counted along
 /// the normal from phi_n, so a plate along the axes with cells of a voxel is the cubic lattice, voxel for voxel. A
 /// voxel takes the state of the column its closest point of the model lies in, at its own height above phi_n. Rules,
-/// arrival, history and margin of a cut are those of grow(). RD, RDR, DPD and DPD_BS are compact: columns of factor *
+/// arrival, history and margin of a cut are those of grow(). RDR and BD see the relief that is there: how high the nest
+/// stands above the model is part of the heights by which particles find the lowest place or stick. RD, RDR, DPD and DPD_BS are compact: columns of factor *
 /// thickness; BD has its pores and overhangs.
 /// \param lattice  of the model at the particles' pitch (surfaceLattice())
 /// \param thicknessUm  largest solid thickness, real µm
