@@ -2,8 +2,9 @@
 # Installs the Debian packages that building and testing need. Does nothing where all are there.
 #
 #   tools/setup.sh              what building and the default tests need
-#   tools/setup.sh --clients    also what reads our files in the tests labelled clients: Blender, a GLSL compiler, and
-#                               USD and MaterialX for Python in the virtual environment build/clients-venv
+#   tools/setup.sh --clients    also what reads our files in the tests labelled clients: Blender, OpenVDB's tools and its
+#                               Python module, a GLSL compiler, and USD and MaterialX for Python in the virtual
+#                               environment build/clients-venv
 set -euo pipefail
 
 packages=(
@@ -20,7 +21,7 @@ packages=(
 clients=no
 for option in "$@"; do
   case "$option" in
-    --clients) packages+=(blender glslang-tools python3-venv); clients=yes ;;
+    --clients) packages+=(blender glslang-tools python3-venv python3-openvdb python3-numpy libopenvdb-tools); clients=yes ;;
     *) echo "setup.sh: unknown option '$option' (--clients)" >&2; exit 2 ;;
   esac
 done

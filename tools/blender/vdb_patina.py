@@ -172,7 +172,7 @@ def import_mesh(result, adaptive):
     if adaptive:
         modifier = mesh.modifiers.new("Subdivision", "SUBSURF")
         modifier.subdivision_type = "CATMULL_CLARK" if result.scheme == "catmullClark" else "SIMPLE"
-        modifier.levels = 0
+        modifier.levels = modifier.render_levels = 0
         modifier.uv_smooth = "PRESERVE_BOUNDARIES"
         scene = bpy.context.scene
         if bpy.app.version < (5, 0, 0):
