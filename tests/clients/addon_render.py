@@ -1,6 +1,6 @@
 """Runs inside Blender: imports a result by the add-on and renders it as the program's own picture was taken.
 
-    blender -b --factory-startup --python-exit-code 1 --python addon_render.py -- ADDON_FOLDER RESULT PICTURE
+    blender -b --factory-startup --python-exit-code 1 --python addon_render.py -- ADDON_FOLDER RESULT PICTURE PANORAMA
 """
 
 import math
@@ -9,7 +9,7 @@ import sys
 import bpy
 from mathutils import Vector
 
-ADDON, RESULT, PICTURE = sys.argv[sys.argv.index("--") + 1 :]
+ADDON, RESULT, PICTURE, PANORAMA = sys.argv[sys.argv.index("--") + 1 :]
 sys.path.insert(0, ADDON)
 import vdb_patina  # noqa: E402
 
@@ -33,15 +33,23 @@ assert len(film.data.polygons) > 100, "the interface was not meshed"
 
 scene = bpy.context.scene
 scene.render.engine = "CYCLES"
-scene.cycles.samples = 32
+scene.cycles.samples = 64
 scene.cycles.use_denoising = False
 scene.cycles.max_bounces = 4
 scene.render.resolution_x = scene.render.resolution_y = 256
 scene.view_settings.view_transform = "Standard"
-world = bpy.data.worlds.new("uniform")
+world = bpy.data.worlds.new("panorama")
 scene.world = world
 world.use_nodes = True
-world.node_tree.nodes["Background"].inputs[0].default_value = (1, 1, 1, 1)
+nodes, links = world.node_tree.nodes, world.node_tree.links
+around = nodes.new("ShaderNodeTexEnvironment")
+around.image = bpy.data.images.load(PANORAMA)
+# The panorama's middle lies ahead of a viewer at azimuth 0 (+y), Blender has it at +x.
+turned, direction = nodes.new("ShaderNodeMapping"), nodes.new("ShaderNodeTexCoord")
+turned.inputs["Rotation"].default_value = (0, 0, -math.pi / 2)
+links.new(direction.outputs["Generated"], turned.inputs["Vector"])
+links.new(turned.outputs["Vector"], around.inputs["Vector"])
+links.new(around.outputs["Color"], nodes["Background"].inputs["Color"])
 
 corners = [mesh.matrix_world @ Vector(corner) for corner in mesh.bound_box]
 middle = sum(corners, Vector()) / 8
