@@ -91,42 +91,81 @@ PATINA_INLINE BandLanes<width> whereGreater(const BandLanes<width>& x, float thr
     return result;
 }
 
-/// exp(-x) for x >= 0, to about 1e-7 relative; beyond exp(-87) it stays there.
-/// -x = n ln 2 + r with |r| <= ln 2 / 2, a polynomial for exp(r) (Cephes' coefficients), and n added to the exponent.
+/// The smaller of x and a limit, band by band.
 template <int width>
-PATINA_INLINE BandLanes<width> expOfMinus(const BandLanes<width>& x) {
+PATINA_INLINE BandLanes<width> atMost(const BandLanes<width>& x, float limit) {
+    return whereGreater(x, limit, BandLanes<width>::constant(limit), x);
+}
+
+/// exp(-x) and 1 - exp(-x), each to about 1e-7 of itself.
+template <int width>
+struct Decay {
+    BandLanes<width> left;
+    BandLanes<width> gone;
+};
+
+/// For x >= 0; beyond exp(-60) it stays there: nothing that is left of it becomes a denormal number, which would cost a
+/// hundred times as much.
+/// -x = n ln 2 + r with |r| <= ln 2 / 2, a polynomial for exp(r) - 1 (Cephes' coefficients), and n added to the exponent
+/// of exp(r). Where n = 0 the polynomial is 1 - exp(-x) without the cancellation.
+template <int width>
+PATINA_INLINE Decay<width> decay(const BandLanes<width>& x) {
     using Bits = typename Register<width>::Bits;
-    const BandLanes<width> limit = BandLanes<width>::constant(87.f);
-    const BandLanes<width> y = 0.f - whereGreater(x, 87.f, limit, x);
-    // Adding 1.5 · 2^23 rounds to an integer and leaves it in the low bits.
-    const BandLanes<width> shifted = y * 1.44269504088896341f + 12582912.f;
-    const BandLanes<width> n = shifted - 12582912.f;
-    const BandLanes<width> r = (y - n * 0.693359375f) + n * 2.12194440e-4f;
+    constexpr float roundToInteger = 12582912.f; // 1.5 · 2^23: what is added to it leaves its integer in the low bits
+    const BandLanes<width> y = atMost(x, 60.f);
+    const BandLanes<width> shifted = roundToInteger - y * 1.44269504088896341f;
+    const BandLanes<width> n = shifted - roundToInteger;
+    const BandLanes<width> r = n * 2.12194440e-4f - (y + n * 0.693359375f);
     BandLanes<width> p = r * 1.9875691500e-4f + 1.3981999507e-3f;
     p = p * r + 8.3334519073e-3f;
     p = p * r + 4.1665795894e-2f;
     p = p * r + 1.6666665459e-1f;
     p = p * r + 5.0000001201e-1f;
-    p = (p * r) * r + r + 1.f;
+    const BandLanes<width> grown = (p * r) * r + r; // exp(r) - 1
+    Decay<width> result;
+    result.left = grown + 1.f;
     for (int i = 0; i < BandLanes<width>::registers; ++i) {
         Bits exponent, mantissa;
         std::memcpy(&exponent, &shifted.part[i], sizeof(exponent));
-        std::memcpy(&mantissa, &p.part[i], sizeof(mantissa));
+        std::memcpy(&mantissa, &result.left.part[i], sizeof(mantissa));
         const Bits sum = mantissa + (exponent << 23);
-        std::memcpy(&p.part[i], &sum, sizeof(sum));
+        std::memcpy(&result.left.part[i], &sum, sizeof(sum));
     }
-    return p;
+    // n > -1/2: no halving took place.
+    result.gone = whereGreater(n, -0.5f, 0.f - grown, 1.f - result.left);
+    return result;
 }
 
-/// Sum over the bands of a · b: eights, then fours, then twos are added, in the same order for every width.
+/// Sum over the bands of a · b and of two more, into rgb[0 … 2]: eights, then fours, then twos are added, in the same
+/// order for every width.
 template <int width>
-PATINA_INLINE float dotBands(const BandLanes<width>& a, const BandLanes<width>& b) {
+PATINA_INLINE void dotBands(const BandLanes<width>& a, const Spectrum* weights, float* rgb) {
     using Four = Register<4>::Floats;
-    const BandLanes<width> product = a * b;
-    Four fours[bandCount / 4];
-    std::memcpy(fours, product.part, sizeof(fours));
-    const Four four = (fours[0] + fours[2]) + (fours[1] + fours[3]);
-    return (four[0] + four[2]) + (four[1] + four[3]);
+    using Eight = Register<8>::Floats;
+    Four fours[3];
+    for (int channel = 0; channel < 3; ++channel) {
+        const BandLanes<width> product = a * BandLanes<width>::load(weights[channel]);
+        if constexpr (width == 4) {
+            fours[channel] = (product.part[0] + product.part[2]) + (product.part[1] + product.part[3]);
+        } else {
+            Eight eights;
+            if constexpr (width == 8) {
+                eights = product.part[0] + product.part[1];
+            } else {
+                eights = __builtin_shufflevector(product.part[0], product.part[0], 0, 1, 2, 3, 4, 5, 6, 7) +
+                         __builtin_shufflevector(product.part[0], product.part[0], 8, 9, 10, 11, 12, 13, 14, 15);
+            }
+            fours[channel] =
+                __builtin_shufflevector(eights, eights, 0, 1, 2, 3) + __builtin_shufflevector(eights, eights, 4, 5, 6, 7);
+        }
+    }
+    const Four twos01 = __builtin_shufflevector(fours[0], fours[1], 0, 4, 1, 5) +
+                        __builtin_shufflevector(fours[0], fours[1], 2, 6, 3, 7);
+    const Four twos2 = __builtin_shufflevector(fours[2], fours[2], 0, 0, 1, 1) +
+                       __builtin_shufflevector(fours[2], fours[2], 2, 2, 3, 3);
+    const Four sum =
+        __builtin_shufflevector(twos01, twos2, 0, 1, 4, 5) + __builtin_shufflevector(twos01, twos2, 2, 3, 6, 7);
+    std::memcpy(rgb, &sum, 3 * sizeof(float));
 }
 
 } // namespace patina

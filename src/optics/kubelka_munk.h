@@ -2,6 +2,7 @@
 // Kubelka–Munk in forms that hold everywhere: K = 0, S = 0, d = 0, d = infinity, in single precision too.
 // K and S are absorption and backscattering per micrometre, d is in micrometres.
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -59,11 +60,18 @@ Real absorptionOverScattering(Real infiniteReflectance) {
     return loss * loss / (2 * infiniteReflectance);
 }
 
-/// Reflectance of a layer over an opaque background, all interreflections included (paper §4.2).
+/// The sum of a series of interreflections, T / (1 - R g), where R + T <= 1 and g <= 1: so it is at most 1, and where
+/// rounding (or a white layer without end over white) leaves nothing of the divisor, T stands in for it.
+template <typename Real>
+Real interreflected(Real transmittance, Real reflectance, Real other) {
+    return transmittance > 0 ? transmittance / std::max(1 - reflectance * other, transmittance) : Real(0);
+}
+
+/// Reflectance of a layer over an opaque background, all interreflections included (paper §4.2). \param background  0…1
 template <typename Real>
 Real overBackground(const LayerLight<Real>& layer, Real background) {
-    return layer.reflectance +
-           layer.transmittance * layer.transmittance * background / (1 - layer.reflectance * background);
+    return layer.reflectance + layer.transmittance * background *
+                                   interreflected(layer.transmittance, layer.reflectance, background);
 }
 
 /// A stack of layers: reflectance differs from above and from below, transmittance does not (Kubelka 1954).
@@ -82,13 +90,12 @@ struct StackLight {
 /// The stack `top` lying on the stack `bottom`. Associative.
 template <typename Real>
 StackLight<Real> onTop(const StackLight<Real>& top, const StackLight<Real>& bottom) {
-    const Real divisor = 1 - top.reflectanceBelow * bottom.reflectanceAbove;
+    const Real down = interreflected(top.transmittance, top.reflectanceBelow, bottom.reflectanceAbove);
+    const Real up = interreflected(bottom.transmittance, bottom.reflectanceAbove, top.reflectanceBelow);
     StackLight<Real> result;
-    result.reflectanceAbove =
-        top.reflectanceAbove + top.transmittance * top.transmittance * bottom.reflectanceAbove / divisor;
-    result.reflectanceBelow =
-        bottom.reflectanceBelow + bottom.transmittance * bottom.transmittance * top.reflectanceBelow / divisor;
-    result.transmittance = top.transmittance * bottom.transmittance / divisor;
+    result.reflectanceAbove = top.reflectanceAbove + top.transmittance * bottom.reflectanceAbove * down;
+    result.reflectanceBelow = bottom.reflectanceBelow + bottom.transmittance * top.reflectanceBelow * up;
+    result.transmittance = bottom.transmittance * down;
     return result;
 }
 
@@ -102,22 +109,24 @@ struct OpticalThickness {
 /// K d and S d of a layer from its reflectance over black and over a background.
 /// a = (R + (R0 - R + Rg) / (R0 Rg)) / 2, S d = atanh(b R0 / (1 - a R0)) / b, K d = (a - 1) S d.
 /// \param overBlack, overBacking  in (0, 1), overBacking >= overBlack; \param backing  in (0, 1].
-/// NaN where no layer has these reflectances.
+/// NaN where no layer has these reflectances. Computed in double: a² - 1 takes half the digits of a float.
 template <typename Real>
 OpticalThickness<Real> fromTwoBackings(Real overBlack, Real overBacking, Real backing) {
-    const Real a = (overBacking + (overBlack - overBacking + backing) / (overBlack * backing)) / 2;
-    const Real b = std::sqrt(a * a - 1);
-    const Real scattering = b > 0 ? std::atanh(b * overBlack / (1 - a * overBlack)) / b : overBlack / (1 - overBlack);
-    return {(a - 1) * scattering, scattering};
+    const double r0 = overBlack, r = overBacking, g = backing;
+    const double a = (r + (r0 - r + g) / (r0 * g)) / 2;
+    const double b = std::sqrt(a * a - 1);
+    const double scattering = b > 0 ? std::atanh(b * r0 / (1 - a * r0)) / b : r0 / (1 - r0);
+    return {static_cast<Real>((a - 1) * scattering), static_cast<Real>(scattering)};
 }
 
 /// S d of a layer from its reflectance over black and the reflectance of an opaque sample of the same material
 /// (ISO 9416, TAPPI T 1214): S d = R / (1 - R²) ln(R (1 - R0 R) / (R - R0)), R the opaque one; 0 <= R0 < R < 1.
 template <typename Real>
 OpticalThickness<Real> fromOpaqueAndThin(Real opaque, Real overBlack) {
-    const Real scattering =
-        opaque / (1 - opaque * opaque) * std::log(opaque * (1 - overBlack * opaque) / (opaque - overBlack));
-    return {absorptionOverScattering(opaque) * scattering, scattering};
+    const double infinite = opaque, r0 = overBlack;
+    const double scattering =
+        infinite / (1 - infinite * infinite) * std::log(infinite * (1 - r0 * infinite) / (infinite - r0));
+    return {static_cast<Real>(absorptionOverScattering(infinite) * scattering), static_cast<Real>(scattering)};
 }
 
 } // namespace patina

@@ -35,6 +35,15 @@ float normalDielectric(float below, float above) {
     return ratio * ratio;
 }
 
+/// Whether two materials look the same at any thickness.
+bool sameOptics(const Material& a, const Material& b) {
+    return &a == &b ||
+           (a.isMetal == b.isMetal && a.refractiveIndex == b.refractiveIndex && a.roughness == b.roughness &&
+            a.hasIndex == b.hasIndex && a.absorption.values == b.absorption.values &&
+            a.scattering.values == b.scattering.values && a.reflectance.values == b.reflectance.values &&
+            a.indexN.values == b.indexN.values && a.indexK.values == b.indexK.values);
+}
+
 const StackKernel& kernel() {
     static const StackKernel chosen = stackKernel();
     return chosen;
@@ -50,13 +59,22 @@ V3f clamped01(const V3f& rgb) {
 
 } // namespace
 
-/// The layers that are there, from bottom to top.
+/// The layers that are there, from bottom to top. Neighbours of one material are one layer: there is no interface
+/// between them, and what depends on thickness (interference, a surface of its own) must not see where it was cut.
 struct StackOptics::PresentLayers {
     int count = 0;
-    int index[maxLayers];
+    int index[maxLayers]; ///< of the uppermost where several are one
     float thicknessUm[maxLayers];
     float weight[maxLayers];
 };
+
+void StackOptics::Layer::setBand(int band, double absorptionPerUm, double scatteringPerUm) {
+    const LayerOptics optics = LayerOptics::of(absorptionPerUm, scatteringPerUm);
+    kappa[band] = optics.kappa;
+    scattering[band] = optics.scattering;
+    absorption[band] = optics.absorption;
+    extinction[band] = optics.extinction;
+}
 
 StackOptics::StackOptics(const std::vector<const Material*>& materials, Model model, const StackFeatures& features)
     : rgbWeights_(bandWeights(features.colourSpace)), features_(features), model_(model) {
@@ -75,13 +93,7 @@ StackOptics::StackOptics(const std::vector<const Material*>& materials, Model mo
     for (const Material* material : materials) {
         Layer layer;
         for (int band = 0; band < bandCount; ++band) {
-            const double absorption = material->absorption[band];
-            const double scattering = material->scattering[band];
-            const double kappa = std::sqrt(absorption * (absorption + 2.0 * scattering));
-            layer.scattering[band] = static_cast<float>(scattering);
-            layer.extinction[band] = static_cast<float>(absorption + scattering);
-            layer.kappa[band] = static_cast<float>(kappa);
-            layer.halfOverKappa[band] = kappa > 0.0 ? static_cast<float>(0.5 / kappa) : 0.f;
+            layer.setBand(band, material->absorption[band], material->scattering[band]);
         }
         layer.reflectance = material->reflectance;
         layer.refractiveIndex = std::max(material->refractiveIndex, 1.f);
@@ -94,14 +106,8 @@ StackOptics::StackOptics(const std::vector<const Material*>& materials, Model mo
             // A metal inside the stack hides what is below: a film that reflects as the metal does at any thickness a
             // picture can show. R∞ of K, S is the metal's reflectance; 50 / µm is a skin of some ten nanometres.
             for (int band = 0; band < bandCount; ++band) {
-                const float r = std::clamp(material->reflectance[band], 0.01f, 0.99f);
-                const float scattering = 50.f;
-                const float absorption = scattering * absorptionOverScattering(r);
-                const float kappa = std::sqrt(absorption * (absorption + 2.f * scattering));
-                layer.scattering[band] = scattering;
-                layer.extinction[band] = absorption + scattering;
-                layer.kappa[band] = kappa;
-                layer.halfOverKappa[band] = 0.5f / kappa;
+                const double r = std::clamp(material->reflectance[band], 0.01f, 0.99f);
+                layer.setBand(band, 50.0 * absorptionOverScattering(r), 50.0);
             }
             layer.refractiveIndex = 1.f;
         }
@@ -109,6 +115,13 @@ StackOptics::StackOptics(const std::vector<const Material*>& materials, Model mo
             materials[0]->hasIndex) {
             layer.thinFilm = static_cast<int>(thinFilms_.size());
             thinFilms_.emplace_back(*materials[0], *material);
+        }
+        layer.kind = static_cast<int>(layers_.size());
+        for (std::size_t below = layers_.size(); below-- > 1;) {
+            if (sameOptics(*materials[below], *material)) {
+                layer.kind = layers_[below].kind;
+                break;
+            }
         }
         layers_.push_back(layer);
     }
@@ -144,12 +157,17 @@ StackOptics::PresentLayers StackOptics::presentLayers(const float* thicknessUm) 
     PresentLayers present;
     for (int k = 0; k < layerCount(); ++k) {
         const float d = thicknessUm[k];
-        if (d > 0.f) { // false for NaN too
-            present.index[present.count] = k + 1;
-            present.thicknessUm[present.count] = std::min(d, thickestUm);
-            present.weight[present.count] = interfaceWeight(d);
-            ++present.count;
+        if (!(d > 0.f)) { // true for NaN too
+            continue;
         }
+        const bool goesOn =
+            present.count > 0 && layers_[present.index[present.count - 1]].kind == layers_[k + 1].kind;
+        const int at = goesOn ? present.count - 1 : present.count++;
+        present.index[at] = k + 1;
+        present.thicknessUm[at] = std::min(goesOn ? present.thicknessUm[at] + d : d, thickestUm);
+    }
+    for (int i = 0; i < present.count; ++i) {
+        present.weight[i] = interfaceWeight(present.thicknessUm[i]);
     }
     return present;
 }
@@ -222,8 +240,8 @@ Spectrum StackOptics::bodyReflectance(const float* thicknessUm) const {
     input.base = &layers_[0].reflectance;
     for (int k = 0; k < present.count; ++k) {
         const Layer& layer = layers_[present.index[k]];
-        input.layers[k] = {&layer.scattering,    &layer.extinction,      &layer.kappa,
-                           &layer.halfOverKappa, present.thicknessUm[k], 0.f};
+        input.layers[k] = {&layer.kappa,      &layer.scattering,      &layer.absorption,
+                           &layer.extinction, present.thicknessUm[k], 0.f};
     }
     Spectrum result;
     kernel().foldBody(input, result);
@@ -245,8 +263,8 @@ void StackOptics::evaluateConserving(const Spectrum& base, const PresentLayers& 
                              normalDielectric(layer.refractiveIndex, above.refractiveIndex);
         }
         surfaceIndex += present.weight[k] * (layer.refractiveIndex - surfaceIndex);
-        input.layers[k] = {&layer.scattering,    &layer.extinction,      &layer.kappa,
-                           &layer.halfOverKappa, present.thicknessUm[k], interfaceAbove};
+        input.layers[k] = {&layer.kappa,      &layer.scattering,      &layer.absorption,
+                           &layer.extinction, present.thicknessUm[k], interfaceAbove};
     }
     const float airReflectance = normalDielectric(surfaceIndex, 1.f);
     const float airEdge = std::min(1.f, airReflectance / fullEdgeReflectance);
@@ -353,14 +371,14 @@ void StackOptics::evaluatePaper(const Spectrum& metal, const PresentLayers& pres
         for (int k = present.count - 1; k >= 0; --k) {
             const Layer& layer = layers_[present.index[k]];
             lobes[k + 1][band] = layer.specular[band] * above.transmittance * above.transmittance;
-            const float absorption = layer.extinction[band] - layer.scattering[band];
-            above = onTop(above, StackLight<float>(kubelkaMunkLayer(std::max(absorption, 0.f), layer.scattering[band],
+            above = onTop(above, StackLight<float>(kubelkaMunkLayer(layer.absorption[band] * layer.kappa[band],
+                                                                    layer.scattering[band] * layer.kappa[band],
                                                                     present.thicknessUm[k])));
         }
         lobes[0][band] = metal[band] * above.transmittance * above.transmittance;
         const float base = metal[band];
         diffuse[band] = above.reflectanceAbove +
-                        above.transmittance * above.transmittance * base / (1.f - above.reflectanceBelow * base);
+                        above.transmittance * base * interreflected(above.transmittance, above.reflectanceBelow, base);
     }
     const auto rgbOf = [this](const Spectrum& spectrum) { 
         return clamped01(V3f(linearFromXyz(xyzFromReflectance(spectrum), features_.colourSpace)));

@@ -39,7 +39,7 @@ struct Appearance {
     OpticsModel model = OpticsModel::energyConserving;
     Imath::V3f diffuse{0.f}; ///< diffuse reflectance at normal incidence, 0…1
     /// lobes[i] belongs to the interface above materials[i], base metal first; black where the layer is absent or
-    /// hidden.
+    /// hidden, or where the next layer is of the same material.
     std::vector<Lobe> lobes;
 
     /// The same flattened to one lobe, for renderers that have one: metals reflect `baseColour`, the rest scatters it.
@@ -81,16 +81,16 @@ class StackOptics {
 
   private:
     struct Layer {
-        Spectrum scattering;    ///< S
-        Spectrum extinction;    ///< K + S
-        Spectrum kappa;         ///< sqrt(K (K + 2 S))
-        Spectrum halfOverKappa; ///< 1 / (2 kappa); 0 where kappa is 0
-        Spectrum reflectance;   ///< base: of the metal
-        Spectrum specular;      ///< specular colour of the paper's lobe
+        Spectrum kappa, scattering, absorption, extinction; ///< as the kernel wants them (stack_kernel.h)
+        Spectrum reflectance;                               ///< base: of the metal
+        Spectrum specular;                                  ///< specular colour of the paper's lobe
+        /// K and S of one band
+        void setBand(int band, double absorptionPerUm, double scatteringPerUm);
         float refractiveIndex = 1.f;
         float alpha = 0.f;
         float roughness = 0.f;
         bool isMetal = false;
+        int kind = 0;      ///< the same number for layers of the same material
         int thinFilm = -1; ///< index into thinFilms_; -1: does not interfere
     };
     struct PresentLayers;

@@ -37,7 +37,7 @@ struct Material {
 
     float hardness = 1.f;       ///< erosion spends thickness times hardness
     float density = 1.f;        ///< solid fraction of the layer, above 0, at most 1
-    float densityKgPerM3 = 0.f; ///< of the solid; 0 where it is not known
+    float densityKgPerM3 = 0.f; ///< of the solid; of mixtures the parts' mean by volume; 0 where it is not known
 
     Imath::V3f swatch{0.5f}; ///< colour of an opaque layer seen in air (interface included), linear Rec.709, 0…1
 };

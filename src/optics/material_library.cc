@@ -154,6 +154,8 @@ class Resolver {
         open_.insert(name);
         bool good = true;
         double knownVolume = 0.0;
+        double solidKgPerM3 = 0.0;
+        bool densityKnown = true;
         FineSpectrum sumN{};
         for (const MixturePart& part : description.parts) {
             const Material* resolved = nullptr;
@@ -173,6 +175,8 @@ class Resolver {
                 continue;
             }
             knownVolume += resolved->hasIndex ? part.volume : 0.0;
+            solidKgPerM3 += part.volume * resolved->densityKgPerM3;
+            densityKnown = densityKnown && resolved->densityKgPerM3 > 0.f;
             for (int i = 0; i < fineCount; ++i) {
                 sumN[i] += resolved->hasIndex ? part.volume * resolved->fineN[i] : 0.0;
                 material.fineAbsorption[i] += part.volume * resolved->fineAbsorption[i];
@@ -180,6 +184,9 @@ class Resolver {
             }
         }
         open_.erase(name);
+        if (material.densityKgPerM3 == 0.f && densityKnown) {
+            material.densityKgPerM3 = static_cast<float>(solidKgPerM3);
+        }
         if (knownVolume >= leastKnownVolume) {
             material.hasIndex = true;
             for (int i = 0; i < fineCount; ++i) {

@@ -27,7 +27,7 @@ struct LobeAlbedo {
     float flat = 1.f;
     float rising = 0.f;
 };
-/// From a table (32 cosines by 32 alphas), within about 0.003.
+/// From a table (40 cosines by 32 alphas) that never says less than the integral, and at most some 0.01 more.
 LobeAlbedo lobeAlbedo(float cosine, float alpha);
 /// 2 ∫ albedo c dc.
 LobeAlbedo meanLobeAlbedo(float alpha);

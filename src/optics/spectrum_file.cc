@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <string_view>
@@ -52,29 +54,30 @@ std::vector<Cell> splitLine(std::string_view line) {
 
 } // namespace
 
-std::string spectrumFault(const TabulatedSpectrum& spectrum, const SpectrumLimits& limits, std::size_t& index) {
+SpectrumFault spectrumFault(const TabulatedSpectrum& spectrum, const SpectrumLimits& limits) {
     const auto& nm = spectrum.wavelengthsNm;
-    for (index = 0; index < nm.size(); ++index) {
-        const double value = spectrum.values[index];
-        if (!std::isfinite(nm[index]) || nm[index] <= 0.0) {
-            return "a wavelength must be a positive number of nanometres";
+    for (std::size_t i = 0; i < nm.size(); ++i) {
+        const double value = spectrum.values[i];
+        if (!std::isfinite(nm[i]) || nm[i] <= 0.0) {
+            return {"a wavelength must be a positive number of nanometres", i, true};
         }
-        if (index > 0 && nm[index] <= nm[index - 1]) {
-            return fmt::format("wavelengths must rise, but {} nm follows {} nm", nm[index], nm[index - 1]);
+        if (i > 0 && nm[i] <= nm[i - 1]) {
+            return {fmt::format("wavelengths must rise, but {} nm follows {} nm", nm[i], nm[i - 1]), i, true};
         }
         if (!(value >= limits.least && value <= limits.most)) {
-            return fmt::format("{} {} is outside {}…{}", limits.quantity, value, limits.least, limits.most);
+            return {fmt::format("{} {} is outside {}…{}", limits.quantity, value, limits.least, limits.most), i, false};
         }
     }
-    for (index = 1; index < nm.size(); ++index) {
-        if (nm[index] - nm[index - 1] > longestStepNm && nm[index] > 400.0 && nm[index - 1] < 700.0) {
-            return fmt::format("a gap from {} to {} nm; at most {} nm may lie between samples", nm[index - 1],
-                               nm[index], longestStepNm);
+    for (std::size_t i = 1; i < nm.size(); ++i) {
+        if (nm[i] - nm[i - 1] > longestStepNm && nm[i] > 400.0 && nm[i - 1] < 700.0) {
+            return {fmt::format("a gap from {} to {} nm; at most {} nm may lie between samples", nm[i - 1], nm[i],
+                                longestStepNm),
+                    i, true};
         }
     }
-    index = nm.empty() ? 0 : nm.size() - 1;
     if (nm.empty() || nm.front() > 440.0 || nm.back() < 690.0) {
-        return "a spectrum must span at least 440…690 nm";
+        const bool begins = !nm.empty() && nm.front() <= 440.0;
+        return {"a spectrum must span at least 440…690 nm", begins ? nm.size() - 1 : 0, true};
     }
     return {};
 }
@@ -83,7 +86,7 @@ TabulatedSpectrum readSpectrumFile(const std::filesystem::path& path, const std:
                                    const SpectrumLimits& limits) {
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(path, ignored)) {
-        fail(path, 0, 0, "no such spectrum file", "paths are relative to the data folder", {});
+        fail(path, 0, 0, "no such spectrum file", "expected a table with the columns wavelength_nm and " + column, {});
     }
     const std::string text = readTextFile(path);
     TabulatedSpectrum spectrum;
@@ -92,7 +95,7 @@ TabulatedSpectrum readSpectrumFile(const std::filesystem::path& path, const std:
     bool headerSeen = false;
     int lineNumber = 0;
     std::vector<int> lines;
-    std::vector<int> columns;
+    std::vector<std::array<int, 2>> columns; // of value and wavelength
     std::vector<std::string_view> sources;
     std::string_view rest = text;
     while (!rest.empty()) {
@@ -138,15 +141,17 @@ TabulatedSpectrum readSpectrumFile(const std::filesystem::path& path, const std:
         spectrum.wavelengthsNm.push_back(numberAt(wavelengthIndex));
         spectrum.values.push_back(numberAt(valueIndex));
         lines.push_back(lineNumber);
-        columns.push_back(cells[valueIndex].column);
+        columns.push_back({cells[valueIndex].column, cells[wavelengthIndex].column});
         sources.push_back(line);
     }
-    std::size_t index = 0;
-    const std::string fault = spectrumFault(spectrum, limits, index);
-    if (!fault.empty()) {
-        const bool known = index < lines.size();
-        fail(path, known ? lines[index] : 0, known ? columns[index] : 0, fault, {},
-             known ? sources[index] : std::string_view{});
+    if (lines.empty()) {
+        fail(path, std::max(lineNumber, 1), 1, "the table has no samples",
+             "expected a line of column names and one line for each wavelength", {});
+    }
+    const SpectrumFault fault = spectrumFault(spectrum, limits);
+    if (!fault.message.empty()) {
+        fail(path, lines[fault.sample], columns[fault.sample][fault.inWavelength], fault.message, {},
+             sources[fault.sample]);
     }
     return spectrum;
 }

@@ -24,8 +24,13 @@ constexpr double longestStepNm = 90.0;
 TabulatedSpectrum readSpectrumFile(const std::filesystem::path& path, const std::string& column,
                                    const SpectrumLimits& limits);
 
-/// What is wrong with the samples from `first` on, or "": shared with spectra written into material files.
-/// \param index  receives the sample at fault.
-std::string spectrumFault(const TabulatedSpectrum& spectrum, const SpectrumLimits& limits, std::size_t& index);
+/// What is wrong with a spectrum, and where.
+struct SpectrumFault {
+    std::string message;       ///< "" where nothing is wrong
+    std::size_t sample = 0;    ///< index of the sample at fault
+    bool inWavelength = false; ///< its wavelength is at fault, not its value
+};
+/// The first fault: shared with spectra written into material files.
+SpectrumFault spectrumFault(const TabulatedSpectrum& spectrum, const SpectrumLimits& limits);
 
 } // namespace patina

@@ -5,12 +5,21 @@
 
 namespace patina {
 
+/// K and S of one band as the kernel wants them.
+struct LayerOptics {
+    float kappa, scattering, absorption, extinction;
+
+    /// kappa is kept above 1e-6 (K + S): so S / kappa is finite, and what it changes, a white layer that would return
+    /// more than 0.999999, cannot be seen.
+    static LayerOptics of(double absorption, double scattering);
+};
+
 /// What the kernel needs to know of one present layer.
 struct KernelLayer {
-    const Spectrum* scattering;
-    const Spectrum* extinction;
-    const Spectrum* kappa;
-    const Spectrum* halfOverKappa;
+    const Spectrum* kappa;      ///< sqrt(K (K + 2 S)), above 0 (LayerOptics)
+    const Spectrum* scattering; ///< S / kappa
+    const Spectrum* absorption; ///< K / kappa
+    const Spectrum* extinction; ///< K + S, 1/µm
     float thicknessUm;
     float interfaceAbove; ///< reflectance of the interface with the layer above; 0 for the topmost
 };

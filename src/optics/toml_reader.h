@@ -154,10 +154,10 @@ class TomlReader {
             }
             return fileSpectrum(table, *file, column, limits);
         }
-        std::vector<SourcePlace> places;
+        std::vector<SourcePlace> wavelengthPlaces, valuePlaces;
         TabulatedSpectrum result;
-        if (!numbers(table, "wavelengths_nm", result.wavelengthsNm, nullptr) ||
-            !numbers(table, "values", result.values, &places)) {
+        if (!numbers(table, "wavelengths_nm", result.wavelengthsNm, &wavelengthPlaces) ||
+            !numbers(table, "values", result.values, &valuePlaces)) {
             return std::nullopt;
         }
         if (result.values.size() != result.wavelengthsNm.size()) {
@@ -165,10 +165,9 @@ class TomlReader {
                   fmt::format("{} values for {} wavelengths", result.values.size(), result.wavelengthsNm.size()));
             return std::nullopt;
         }
-        std::size_t index = 0;
-        const std::string fault = spectrumFault(result, limits, index);
-        if (!fault.empty()) {
-            error(index < places.size() ? places[index] : placeOf(table), fault);
+        const SpectrumFault fault = spectrumFault(result, limits);
+        if (!fault.message.empty()) {
+            error((fault.inWavelength ? wavelengthPlaces : valuePlaces)[fault.sample], fault.message);
             return std::nullopt;
         }
         return result;

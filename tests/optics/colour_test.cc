@@ -34,6 +34,77 @@ TEST(Colour, primariesAreThoseOfRec709) {
     EXPECT_NEAR((back - V3d(0.2, 0.7, 0.05)).length(), 0.0, 1e-12);
 }
 
+// AP1's primaries (S-2014-004) are the corners of ACEScg; seen under D65 they are Bradford's image of them. Adapting back
+// by the same cone responses must give the published chromaticities.
+TEST(Colour, primariesOfAcescgAreThoseOfAp1) {
+    const double chromaticities[3][2] = {{0.713, 0.293}, {0.165, 0.830}, {0.128, 0.044}};
+    const double bradford[3][3] = {{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}};
+    const auto cones = [&](const V3d& xyz) {
+        V3d result;
+        for (int row = 0; row < 3; ++row) {
+            result[row] = bradford[row][0] * xyz.x + bradford[row][1] * xyz.y + bradford[row][2] * xyz.z;
+        }
+        return result;
+    };
+    const V3d acesWhite(0.32168 / 0.33767, 1.0, (1.0 - 0.32168 - 0.33767) / 0.33767);
+    const V3d from = cones(whiteD65()), to = cones(acesWhite);
+    for (int c = 0; c < 3; ++c) {
+        V3d one(0.0);
+        one[c] = 1.0;
+        EXPECT_NEAR((acescgFromXyz(xyzFromAcescg(one)) - one).length(), 0.0, 1e-12);
+        const V3d underD65 = cones(xyzFromAcescg(one));
+        const double x = chromaticities[c][0], y = chromaticities[c][1];
+        const V3d published = cones({x / y, 1.0, (1.0 - x - y) / y});
+        // Equal up to brightness: the cone responses keep their ratios.
+        const double scale = underD65.x * to.x / from.x / published.x;
+        for (int k = 0; k < 3; ++k) {
+            EXPECT_NEAR(underD65[k] * to[k] / from[k], scale * published[k], 1e-9 * scale);
+        }
+    }
+}
+
+// The matrix from linear sRGB to ACEScg with Bradford's adaptation, as the ACES documentation prints it.
+TEST(Colour, acescgOfRec709IsThePublishedMatrix) {
+    const double published[3][3] = {
+        {0.613097, 0.339523, 0.047379}, {0.070194, 0.916354, 0.013452}, {0.020616, 0.109570, 0.869815}};
+    for (int column = 0; column < 3; ++column) {
+        V3d one(0.0);
+        one[column] = 1.0;
+        const V3d aces = acescgFromXyz(xyzFromLinearRec709(one));
+        for (int row = 0; row < 3; ++row) {
+            EXPECT_NEAR(aces[row], published[row][column], 2e-4);
+        }
+    }
+}
+
+// What a bake in ACEScg writes is what one in Rec.709 writes, converted, wherever Rec.709 has room for the colour.
+TEST(Colour, aStackInAcescgIsTheSameStackConverted) {
+    test::Uniforms uniforms("acescg");
+    int compared = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const test::RandomStack stack = test::randomStack(uniforms);
+        const StackOptics optics(stack.materials);
+        Appearance rec709, acescg;
+        optics.evaluate(stack.thicknessUm.data(), rec709);
+        optics.in(ColourSpace::acescg).evaluate(stack.thicknessUm.data(), acescg);
+        const auto compare = [&](const Imath::V3f& a, const Imath::V3f& b, const char* what) {
+            if (a.x <= 0.f || a.y <= 0.f || a.z <= 0.f) {
+                return; // clipped
+            }
+            const V3d converted = acescgFromXyz(xyzFromLinearRec709(V3d(a)));
+            EXPECT_NEAR((converted - V3d(b)).length(), 0.0, 1e-5) << what << " " << i;
+            ++compared;
+        };
+        const Imath::V3f sum = test::total(rec709);
+        if (std::max({sum.x, sum.y, sum.z}) < 0.99f) {
+            compare(rec709.diffuse, acescg.diffuse, "diffuse");
+            const Imath::V3f air(rec709.lobes[0].air); // added after clipping
+            compare(rec709.lobes[0].colour - air, acescg.lobes[0].colour - air, "metal");
+        }
+    }
+    EXPECT_GT(compared, 1500);
+}
+
 TEST(Colour, builtInTablesAreTheShippedFile) {
     std::ifstream file(std::filesystem::path(PATINA_SOURCE_DIR) / "data/cie/cie1931_2deg_d65_5nm.csv");
     ASSERT_TRUE(file);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <vector>
 
 namespace patina {
 namespace {
@@ -25,12 +26,19 @@ TEST(KubelkaMunk, givesThePublishedValues) {
     EXPECT_NEAR(absorptionOverScattering(0.9), 0.0055555555556, 1e-12);
 }
 
-// Values of another program's tests (lindemeier/painty, kubelka_munk_test.cpp).
+// Values of another program's tests (lindemeier/painty, kubelka_munk_test.cpp), printed to six digits.
+template <typename Real>
+void checkAnotherProgram(Real tolerance) {
+    EXPECT_NEAR(overBackground(kubelkaMunkLayer<Real>(0.2, 0.124, 0.5), Real(0.65)), 0.541596, tolerance);
+    EXPECT_NEAR(overBackground(kubelkaMunkLayer<Real>(0.1, 0.658, 0.5), Real(0.2)), 0.343822, tolerance);
+    EXPECT_NEAR(overBackground(kubelkaMunkLayer<Real>(0.22, 0.123, 0.5), Real(0.2146)), 0.206651, tolerance);
+    EXPECT_NEAR(overBackground(kubelkaMunkLayer<Real>(0.2, 0.0, 0.5), Real(0.65)), 0.53217499728, tolerance);
+}
+
 TEST(KubelkaMunk, agreesWithAnotherProgramOverABackground) {
-    EXPECT_NEAR(overBackground(kubelkaMunkLayer(0.2, 0.124, 0.5), 0.65), 0.541596, 1e-5);
-    EXPECT_NEAR(overBackground(kubelkaMunkLayer(0.1, 0.658, 0.5), 0.2), 0.343822, 1e-5);
-    EXPECT_NEAR(overBackground(kubelkaMunkLayer(0.22, 0.123, 0.5), 0.2146), 0.206651, 1e-5);
-    EXPECT_NEAR(overBackground(kubelkaMunkLayer(0.2, 0.0, 0.5), 0.65), 0.53217499728, 1e-7);
+    checkAnotherProgram<double>(1e-6);
+    checkAnotherProgram<float>(1e-4f);
+    EXPECT_NEAR(overBackground(kubelkaMunkLayer(0.2, 0.0, 0.5), 0.65), 0.65 * std::exp(-2.0 * 0.2 * 0.5), 1e-14);
 }
 
 template <typename Real>
@@ -66,6 +74,26 @@ TEST(KubelkaMunk, holdsAtEveryLimitInBothPrecisions) {
     checkLimits<float>(1e-6f);
 }
 
+// White without end over white: every photon comes back, and the printed form is 0 / 0.
+template <typename Real>
+void checkWhiteOverWhite() {
+    const Real infinity = std::numeric_limits<Real>::infinity();
+    for (const Real d : {Real(1), Real(1e9), Real(1e30), infinity}) {
+        for (const Real scattering : {Real(1e-6), Real(1), Real(1e6)}) {
+            const auto layer = kubelkaMunkLayer<Real>(0, scattering, d);
+            EXPECT_NEAR(overBackground(layer, Real(1)), 1.0, 1e-6) << scattering << " " << d;
+            const auto both = onTop(StackLight<Real>(layer), StackLight<Real>(layer));
+            EXPECT_NEAR(both.reflectanceAbove + both.transmittance, 1.0, 1e-6) << scattering << " " << d;
+            EXPECT_EQ(both.reflectanceAbove, both.reflectanceBelow);
+        }
+    }
+}
+
+TEST(KubelkaMunk, whiteWithoutEndOverWhiteIsWhite) {
+    checkWhiteOverWhite<double>();
+    checkWhiteOverWhite<float>();
+}
+
 TEST(KubelkaMunk, neverGivesNaNAndNeverGainsInAMillionSinglePrecisionStacks) {
     Uniforms uniforms("million");
     const auto pick = [&](double low, double high) {
@@ -73,17 +101,29 @@ TEST(KubelkaMunk, neverGivesNaNAndNeverGainsInAMillionSinglePrecisionStacks) {
         return static_cast<float>(u < 0.05 ? 0.0 : low * std::pow(high / low, (u - 0.05) / 0.95));
     };
     for (int i = 0; i < 1000000; ++i) {
-        float reflectance = static_cast<float>(uniforms());
-        for (int k = 0; k < 2; ++k) {
-            const auto layer = kubelkaMunkLayer(pick(1e-6, 1e3), pick(1e-6, 1e3), pick(1e-6, 1e4));
+        const double u = uniforms();
+        const float base = u < 0.1 ? 0.f : u > 0.9 ? 1.f : static_cast<float>(u);
+        float folded = base;
+        StackLight<float> merged;
+        for (int k = 0; k < 3; ++k) {
+            const float absorption = pick(1e-6, 1e3), scattering = pick(1e-6, 1e3);
+            const float d = uniforms() < 0.05 ? std::numeric_limits<float>::infinity() : pick(1e-6, 1e4);
+            const auto layer = kubelkaMunkLayer(absorption, scattering, d);
             ASSERT_GE(layer.reflectance, 0.f);
             ASSERT_GE(layer.transmittance, 0.f);
             ASSERT_LE(layer.reflectance + layer.transmittance, 1.f + 1e-5f);
-            if (layer.reflectance * reflectance < 0.999f) {
-                reflectance = overBackground(layer, reflectance);
+            folded = overBackground(layer, folded);
+            ASSERT_TRUE(folded >= 0.f && folded <= 1.f + 1e-5f) << folded;
+            merged = onTop(StackLight<float>(layer), merged);
+            for (const float part : {merged.reflectanceAbove, merged.reflectanceBelow, merged.transmittance}) {
+                ASSERT_TRUE(part >= 0.f && part <= 1.f + 1e-5f) << part;
             }
-            ASSERT_TRUE(reflectance >= 0.f && reflectance <= 1.f + 1e-4f) << reflectance;
+            ASSERT_LE(merged.reflectanceAbove + merged.transmittance, 1.f + 2e-5f);
         }
+        const float over = merged.reflectanceAbove +
+                           merged.transmittance * base *
+                               interreflected(merged.transmittance, merged.reflectanceBelow, base);
+        ASSERT_NEAR(over, folded, 1e-4f);
     }
 }
 
@@ -100,6 +140,8 @@ TEST(KubelkaMunk, singlePrecisionIsWithinATenThousandthOfDouble) {
     }
 }
 
+// 1e-6 in double. In single precision the reflectances themselves are rounded at 6e-8, and a layer that hides its
+// backing tells little of its thickness: 1e-4 holds where half a percent or more of the backing's light shows.
 TEST(KubelkaMunk, invertsTwoBackings) {
     Uniforms uniforms("backings");
     for (int i = 0; i < 2000; ++i) {
@@ -107,9 +149,16 @@ TEST(KubelkaMunk, invertsTwoBackings) {
         const double s = uniforms.logBetween(0.05, 3.0);
         const double backing = uniforms.between(0.3, 1.0);
         const auto layer = kubelkaMunkLayer(k, s, 0.8);
-        const auto found = fromTwoBackings(layer.reflectance, overBackground(layer, backing), backing);
+        const double over = overBackground(layer, backing);
+        const auto found = fromTwoBackings(layer.reflectance, over, backing);
         EXPECT_NEAR(found.absorption, k * 0.8, 1e-6 * (1.0 + k));
         EXPECT_NEAR(found.scattering, s * 0.8, 1e-6 * (1.0 + s));
+        if (over - layer.reflectance > 0.005) {
+            const auto single = fromTwoBackings(static_cast<float>(layer.reflectance), static_cast<float>(over),
+                                                static_cast<float>(backing));
+            EXPECT_NEAR(single.absorption, k * 0.8, 1e-4 * (1.0 + k)) << k << " " << s << " " << backing;
+            EXPECT_NEAR(single.scattering, s * 0.8, 1e-4 * (1.0 + s)) << k << " " << s << " " << backing;
+        }
     }
 }
 
@@ -118,6 +167,10 @@ TEST(KubelkaMunk, invertsAnOpaqueAndAThinSample) {
     const auto found = fromOpaqueAndThin(infiniteReflectance(0.3, 0.9), layer.reflectance);
     EXPECT_NEAR(found.absorption, 0.3 * 1.7, 1e-10);
     EXPECT_NEAR(found.scattering, 0.9 * 1.7, 1e-10);
+    const auto single = fromOpaqueAndThin(static_cast<float>(infiniteReflectance(0.3, 0.9)),
+                                          static_cast<float>(layer.reflectance));
+    EXPECT_NEAR(single.absorption, 0.3 * 1.7, 1e-4);
+    EXPECT_NEAR(single.scattering, 0.9 * 1.7, 1e-4);
 }
 
 struct RandomLayer {
@@ -165,10 +218,10 @@ TEST(KubelkaMunk, stackingIsAssociativeAndEqualsTheFoldFromTheBaseUp) {
     }
 }
 
-// A strong scatterer over an absorber: composing front to back with one reflectance for both sides, as the paper's text
-// reads, gives 0.58204596752.
+// A strong scatterer over an absorber: 0.58124746920. Composing front to back with one reflectance for both sides, as the
+// paper's text reads, gives 0.58204596752.
 TEST(KubelkaMunk, keepsFrontAndBackReflectanceApart) {
-    const double d[3] = {0.5, 0.4, 0.7};
+    const double d[3] = {1.0, 0.4, 0.7};
     const auto a = kubelkaMunkLayer(0.2, 2.0, d[0]);
     const auto b = kubelkaMunkLayer(3.0, 0.2, d[1]);
     const auto c = kubelkaMunkLayer(0.5, 1.0, d[2]);
@@ -176,10 +229,18 @@ TEST(KubelkaMunk, keepsFrontAndBackReflectanceApart) {
     const auto merged = onTop(onTop(StackLight<double>(a), StackLight<double>(b)), StackLight<double>(c));
     const double other = merged.reflectanceAbove +
                          merged.transmittance * merged.transmittance * 0.6 / (1.0 - merged.reflectanceBelow * 0.6);
+    EXPECT_NEAR(exact, 0.58124746920, 5e-12);
     EXPECT_NEAR(exact, other, 1e-14);
+    const auto naive = [](const LayerLight<double>& top, const LayerLight<double>& bottom) {
+        const double divisor = 1.0 - top.reflectance * bottom.reflectance;
+        return LayerLight<double>{top.reflectance +
+                                      top.transmittance * top.transmittance * bottom.reflectance / divisor,
+                                  top.transmittance * bottom.transmittance / divisor};
+    };
+    EXPECT_NEAR(overBackground(naive(naive(a, b), c), 0.6), 0.58204596752, 5e-12);
 }
 
-using Real = long double; // the growing solution takes digits from the other one
+using Real = long double;
 using Matrix2 = std::array<Real, 4>;
 
 Matrix2 multiply(const Matrix2& a, const Matrix2& b) {
@@ -207,29 +268,40 @@ Matrix2 exponential(Matrix2 m) {
     return result;
 }
 
-// The two flux equations (with the second sign put right) as dB/dz = M B: B(d) = exp(M d) B(0), and nothing comes up
-// from below a layer over black.
+// The two flux equations (with the second sign put right) as dB/dz = M B, B = (B+, B-): B(d) = exp(M d) B(0) = P B(0).
+// Light from above over black, B-(d) = 0: R = -P21 / P22, and T = 1 / P22 because det P = exp(trace) = 1; light from
+// below, B+(0) = 0: R' = P12 / P22; over a base g, B-(d) = g B+(d): R = (g P11 - P21) / (P22 - g P12). None of these
+// subtracts what nearly cancels, however thick the layers are.
 TEST(KubelkaMunk, solvesTheDifferentialEquations) {
     Uniforms uniforms("matrix");
+    double thickest = 0.0;
     for (int i = 0; i < 2000; ++i) {
-        const RandomLayer layers[2] = {randomLayer(uniforms), randomLayer(uniforms)};
         Matrix2 through = {1, 0, 0, 1};
+        StackLight<double> stack;
+        const int count = 1 + uniforms.below(4);
+        std::vector<RandomLayer> layers;
         double depth = 0.0;
-        for (const RandomLayer& l : layers) {
-            const Real k = l.k, scatter = l.s, d = l.d;
+        for (int n = 0; n < count; ++n) { // from the top down
+            layers.push_back(randomLayer(uniforms));
+            layers[n].d *= 3.0;
+            const Real k = layers[n].k, scatter = layers[n].s, d = layers[n].d;
             through =
                 multiply(exponential({-(k + scatter) * d, scatter * d, -scatter * d, (k + scatter) * d}), through);
-            depth += (l.k + l.s) * l.d;
+            depth += (layers[n].k + layers[n].s) * layers[n].d;
+            stack = n == 0 ? lightOf(layers[0]) : onTop(stack, lightOf(layers[n]));
         }
-        if (depth > 5.0) {
-            continue; // the growing solution drowns the other one in the matrix
+        thickest = std::max(thickest, depth);
+        ASSERT_NEAR(stack.reflectanceAbove, double(-through[2] / through[3]), 1e-12);
+        ASSERT_NEAR(stack.reflectanceBelow, double(through[1] / through[3]), 1e-12);
+        ASSERT_NEAR(stack.transmittance, double(1 / through[3]), 1e-12);
+        const double base = uniforms();
+        double folded = base; // each layer once, from the base up
+        for (int n = count - 1; n >= 0; --n) {
+            folded = overBackground(kubelkaMunkLayer(layers[n].k, layers[n].s, layers[n].d), folded);
         }
-        const Real reflectance = -through[2] / through[3];
-        const Real transmittance = through[0] + through[1] * reflectance;
-        const auto stack = onTop(lightOf(layers[0]), lightOf(layers[1]));
-        ASSERT_NEAR(stack.reflectanceAbove, double(reflectance), 1e-12);
-        ASSERT_NEAR(stack.transmittance, double(transmittance), 1e-12);
+        ASSERT_NEAR(folded, double((base * through[0] - through[2]) / (through[3] - base * through[1])), 1e-12);
     }
+    EXPECT_GT(thickest, 25.0);
 }
 
 } // namespace

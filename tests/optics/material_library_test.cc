@@ -54,6 +54,7 @@ TEST(MaterialLibrary, shipsEveryMaterialOfThePaper) {
                              "magnetite",
                              "zinc_oxide",
                              "zinc_carbonate",
+                             "gibbsite",
                              "silver_sulphide"}) {
         EXPECT_NE(shippedMaterials().find(name), nullptr) << name;
     }
@@ -105,6 +106,25 @@ TEST(MaterialLibrary, mixturesFollowDuncansRule) {
                     1e-9 * cuprite.fineAbsorption[i]);
         EXPECT_NEAR(tarnish.fineScattering[i], 0.85 * cuprite.fineScattering[i] + 0.15 * sulphide.fineScattering[i],
                     1e-9);
+    }
+}
+
+TEST(MaterialLibrary, aMixtureHasTheMeanDensityOfItsParts) {
+    const auto& library = shippedMaterials();
+    EXPECT_NEAR(library.at("tarnish_1").densityKgPerM3,
+                0.85f * library.at("cuprite").densityKgPerM3 + 0.15f * library.at("copper_sulphide").densityKgPerM3, 1.f);
+    for (const std::string& name : library.names()) {
+        EXPECT_GT(library.at(name).densityKgPerM3, 0.f) << name;
+    }
+}
+
+// Where the roughness or the scattering is an estimate, the flag says so: no file claims to be measured throughout.
+TEST(MaterialLibrary, whatIsCalledAnEstimateInTheSourceIsFlagged) {
+    for (const std::string& name : shippedMaterials().names()) {
+        const Material& material = shippedMaterials().at(name);
+        if (material.source.find("stimate") != std::string::npos) {
+            EXPECT_TRUE(material.isEstimate) << name;
+        }
     }
 }
 
@@ -180,21 +200,37 @@ TEST_F(BrokenMaterials, spectrumOutOfOrder) {
     std::string text = goodFilm;
     text.replace(text.find("480, 560"), 8, "560, 480");
     write("materials/green.toml", text);
-    expectFinding("green.toml", 4, 21, "wavelengths must rise, but 480 nm follows 560 nm");
+    expectFinding("green.toml", 3, 29, "wavelengths must rise, but 480 nm follows 560 nm"); // the 480 itself
 }
 
 TEST_F(BrokenMaterials, spectrumWithAGap) {
     write("spectra/gap.csv", "# measured\nwavelength_nm,reflectance\n400,0.1\n420,0.1\n600,0.2\n700,0.2\n");
     write("materials/green.toml",
           "source = \"test\"\n[reflectance]\nfile = \"spectra/gap.csv\"\n[scattering]\nhides_at_um = 3\n");
-    expectFinding("gap.csv", 5, 5, "a gap from 420 to 600 nm");
+    expectFinding("gap.csv", 5, 1, "a gap from 420 to 600 nm");
 }
 
 TEST_F(BrokenMaterials, spectrumOutOfOrderInItsFile) {
     write("spectra/order.csv", "wavelength_nm,reflectance\n400,0.1\n500,0.1\n450,0.2\n700,0.2\n");
     write("materials/green.toml",
           "source = \"test\"\n[reflectance]\nfile = \"spectra/order.csv\"\n[scattering]\nhides_at_um = 3\n");
-    expectFinding("order.csv", 4, 5, "wavelengths must rise, but 450 nm follows 500 nm");
+    expectFinding("order.csv", 4, 1, "wavelengths must rise, but 450 nm follows 500 nm");
+}
+
+TEST_F(BrokenMaterials, aPlaceInAFileIsThatOfTheNumberAtFault) {
+    const char* const toml = "source = \"test\"\n[reflectance]\nfile = \"spectra/it.csv\"\n[scattering]\nhides_at_um = 3\n";
+    write("materials/green.toml", toml);
+    const std::string head = "# measured\nreflectance, wavelength_nm\n";
+    write("spectra/it.csv", head + "0.1, 400\n0.1, 500\n0.2, 450\n0.2, 700\n");
+    expectFinding("it.csv", 5, 6, "wavelengths must rise");
+    write("spectra/it.csv", head + "0.1, 400\n0.1, 500\n 1.2, 600\n0.2, 700\n");
+    expectFinding("it.csv", 5, 2, "reflectance 1.2 is outside 0…1");
+    write("spectra/it.csv", head + "0.1, 500\n0.1, 550\n 0.2, 630\n0.2, 700\n");
+    expectFinding("it.csv", 3, 6, "must span at least 440…690 nm");
+    write("spectra/it.csv", head);
+    expectFinding("it.csv", 2, 1, "the table has no samples");
+    write("spectra/it.csv", "wavelength_nm, R\n400, 0.1\n700, 0.1\n");
+    expectFinding("it.csv", 1, 1, "no column 'reflectance'");
 }
 
 TEST_F(BrokenMaterials, spectrumWithAWordForANumber) {
@@ -208,7 +244,7 @@ TEST_F(BrokenMaterials, spectrumTooShort) {
     std::string text = goodFilm;
     text.replace(text.find("640, 700"), 8, "610, 640");
     write("materials/green.toml", text);
-    expectFinding("green.toml", 4, 31, "must span at least 440…690 nm");
+    expectFinding("green.toml", 3, 39, "must span at least 440…690 nm"); // the last, 640
 }
 
 TEST_F(BrokenMaterials, reflectanceAboveOne) {

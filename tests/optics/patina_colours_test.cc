@@ -108,22 +108,81 @@ TEST(PatinaColours, coatingsOfThePapersScriptsReadBrownThenGreen) {
     }
 }
 
-// The mixtures were fixed from the minerals that the paper names, before this was measured. Thickness: ISO 9224, 30
-// years in C3, 0.95 µm in the first year times 9.67 of metal, four times that as mineral, half of it washed away.
+/// What weathered copper roofs were measured to look like: L*a*b* (2 degrees, D65) computed from samples 0692UUUCOP and
+/// 0682UUUCOP. Reproduced from the ASTER Spectral Library through the courtesy of the Jet Propulsion Laboratory,
+/// California Institute of Technology, Pasadena, California. Copyright (c) 1999, California Institute of Technology. ALL
+/// RIGHTS RESERVED. (Baldridge, Hook, Grove & Rivera 2009, Remote Sens. Environ. 113:711-715.)
+const V3d tenYearRoof(51.3, 18.7, 32.5), oldRoof(67.9, -11.8, 6.4);
+
+/// An environment as data/weather/copper_*.toml has it.
+struct Environment {
+    const char* name;
+    const char *cuprite, *third, *fourth;
+    double tarnishUm, tarnishYears, cupriteUm, cupriteYears;
+};
+const Environment environments[] = {
+    {"marine", "cuprite_2", "marine_patina_3", "marine_patina_4", 0.35, 0.7, 0.8, 3.0},
+    {"rural", "cuprite_2", "rural_patina_3", "rural_patina_4", 0.25, 1.0, 0.8, 5.0},
+    {"urban", "cuprite_urban_2", "patina_urban_3", "patina_urban_4", 0.55, 0.5, 1.0, 2.0}};
+
+/// ISO 9224: metal lost after t years, along the tangent from 20 years on. r: the geometric middle of the category in
+/// ISO 9223, as docs/weather.md uses it.
+double metalLostUm(double firstYearUm, double years) {
+    constexpr double b = 0.667;
+    const double at20 = std::pow(20.0, b);
+    return firstYearUm * (years <= 20.0 ? std::pow(years, b) : at20 + b * at20 / 20.0 * (years - 20.0));
+}
+const double c2UmPerYear = std::sqrt(0.1 * 0.6), c3UmPerYear = std::sqrt(0.6 * 1.3);
+
+/// The stack of docs/optics.md, section 5: four times the metal as mineral, half of it washed away; the oxides have theirs
+/// first, the two mineral layers share the rest evenly.
+V3d roofLab(const Environment& environment, double firstYearUm, double years) {
+    const double whole = 0.5 * 4.0 * metalLostUm(firstYearUm, years);
+    const double tarnish = environment.tarnishUm * (1.0 - std::exp(-years / environment.tarnishYears));
+    const double cuprite = environment.cupriteUm * (1.0 - std::exp(-years / environment.cupriteYears));
+    const float each = static_cast<float>(std::max(0.5 * (whole - tarnish - cuprite), 0.0));
+    return test::labOf(
+        test::total(look({"copper", "tarnish_1", environment.cuprite, environment.third, environment.fourth},
+                         {static_cast<float>(tarnish), static_cast<float>(cuprite), each, each})));
+}
+
 TEST(PatinaColours, aThirtyYearOldPatinaLooksLikeTheMeasuredRoof) {
-    const auto file = test::sharedData() / "spectra/aster_v2/copper_roof_extremely_weathered.csv";
-    if (!std::filesystem::exists(file)) {
-        GTEST_SKIP() << "the roof's measurement is not here; it may not be shipped";
+    for (const Environment& environment : environments) {
+        const V3d lab = roofLab(environment, c3UmPerYear, 30.0);
+        EXPECT_LE(deltaE2000(lab, oldRoof), 8.0) << environment.name << " " << lab;
+        RecordProperty(std::string(environment.name) + "_delta_e", std::to_string(deltaE2000(lab, oldRoof)));
     }
-    const V3d roof = labFromXyz(xyzFromReflectance(readSpectrumFile(file, "reflectance", {}).fine()));
-    const float half = 0.5f * 0.5f * 0.95f * 9.67f * 4.f;
-    const V3d marine = test::labOf(test::total(
-        look({"copper", "tarnish_1", "cuprite_2", "marine_patina_3", "marine_patina_4"}, {0.35f, 1.2f, half, half})));
-    EXPECT_LE(deltaE2000(marine, roof), 8.0) << marine;
-    const V3d urban = test::labOf(test::total(look(
-        {"copper", "tarnish_1", "cuprite_urban_2", "patina_urban_3", "patina_urban_4"}, {0.55f, 1.f, half, half})));
-    RecordProperty("urban_delta_e", std::to_string(deltaE2000(urban, roof)));
-    EXPECT_LE(deltaE2000(urban, roof), 10.0) << urban;
+    EXPECT_LE(deltaE2000(roofLab(environments[1], c2UmPerYear, 30.0), oldRoof), 8.0); // the country is C2
+}
+
+// What holds of the other roof, ten years old and still brown: it is copper under cuprite of a fifteenth to a tenth of a
+// micrometre. So little comes only of the driest air: cuprite is 1.68 times the metal, so that film is 0.04 … 0.06 µm
+// of copper in ten years and r = 0.008 … 0.014 µm a year, inside C1 (up to 0.1).
+TEST(PatinaColours, theTenYearOldRoofIsAThinFilmOfCuprite) {
+    double best = 1e9;
+    for (double um = 0.065; um < 0.1; um += 0.005) {
+        const double difference =
+            deltaE2000(test::labOf(test::total(look({"copper", "cuprite_2"}, {static_cast<float>(um)}))), tenYearRoof);
+        EXPECT_LE(difference, 10.0) << um;
+        best = std::min(best, difference);
+    }
+    EXPECT_LE(best, 7.5);
+    for (const double um : {0.065, 0.1}) {
+        const double firstYearUm = um / 1.68 / metalLostUm(1.0, 10.0);
+        EXPECT_GT(firstYearUm, 0.0);
+        EXPECT_LT(firstYearUm, 0.1);
+    }
+}
+
+// What does not hold: the kinetics of an ordinary place, C2 and above, make ten years more than half a micrometre of
+// oxide and some green, darker or greener than that roof by far. This asserts the failure, so that whoever mends it finds
+// the sentence in docs/optics.md that says so.
+TEST(PatinaColours, tenYearsOfOrdinaryKineticsAreNotThatRoof) {
+    for (const Environment& environment : environments) {
+        for (const double rate : {c2UmPerYear, c3UmPerYear}) {
+            EXPECT_GT(deltaE2000(roofLab(environment, rate, 10.0), tenYearRoof), 10.0) << environment.name;
+        }
+    }
 }
 
 } // namespace

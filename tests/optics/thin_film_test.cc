@@ -107,6 +107,22 @@ class ThinFilmStack : public testing::Test {
     StackOptics plain{materials}, interfering{materials, OpticsModel::energyConserving, thin()};
 };
 
+// Colours of a smooth film of cuprite (Palik's n, k) on copper (Johnson and Christy) at normal incidence, computed by
+// another program every 5 nm from the full tables (CIE 1931 2 degrees, D65). Rows whose colour Rec.709 can show.
+TEST_F(ThinFilmStack, coloursAreThoseOfAnotherProgram) {
+    const struct {
+        float nm;
+        Imath::V3d lab;
+    } rows[] = {{0, {86.06, 11.85, 13.06}},  {5, {79.98, 16.96, 22.83}}, {10, {69.99, 27.90, 36.04}},
+                {15, {55.34, 47.45, 45.38}}, {25, {39.18, 47.81, -2.06}}, {30, {51.42, 16.40, -1.77}},
+                {35, {63.13, 4.41, 4.21}},   {40, {71.38, 1.76, 9.16}},   {50, {80.30, 1.67, 15.69}},
+                {60, {83.68, 2.20, 21.82}},  {80, {80.73, 10.67, 38.95}}, {100, {61.29, 51.01, 15.56}}};
+    for (const auto& row : rows) {
+        const Imath::V3d lab = test::labOf(totalOf(interfering, {1e-3f * row.nm, 0.f}));
+        EXPECT_LE(deltaE2000(lab, row.lab), 1.0) << row.nm << " nm: " << lab;
+    }
+}
+
 TEST_F(ThinFilmStack, changesOnlyWhatIsThinnerThan150Nanometres) {
     for (const float um : {0.f, 0.15f, 0.3f, 2.f}) {
         EXPECT_EQ(totalOf(interfering, {um, 0.f}), totalOf(plain, {um, 0.f})) << um;
