@@ -35,11 +35,36 @@ void paste(Image& sheet, const Image& picture, int left, int top) {
         std::copy_n(picture.at(0, y), std::size_t(picture.width) * 3, sheet.at(left, top + y));
 }
 
-// OpenImageIO 2.4 loses the upper bits of characters of two bytes: "µm" would read "5m".
-std::string drawable(std::string text) {
-    for (std::size_t at; (at = text.find("µ")) != std::string::npos;)
+// OpenImageIO 2.4 loses the upper bits of characters of two bytes: "µm" would read "5m". A µ is drawn as a u whose left
+// stem goes on below the line. \returns where they are
+std::vector<std::size_t> replaceMu(std::string& text) {
+    std::vector<std::size_t> places;
+    for (std::size_t at; (at = text.find("µ")) != std::string::npos;) {
         text.replace(at, 2, "u");
-    return text;
+        places.push_back(at);
+    }
+    return places;
+}
+
+// Continues the stem of the u at `place` of a line whose ink begins at `left`, as the font itself draws it: its
+// coverage is read off a copy of the line in white on black.
+void drawStem(Image& image, const std::string& text, std::size_t place, int left, int baseline, int height,
+              const std::string& font, const Imath::V3f& ink) {
+    const OIIO::ROI before = OIIO::ImageBufAlgo::text_size(text.substr(0, place + 1), height, font);
+    const OIIO::ROI letter = OIIO::ImageBufAlgo::text_size("u", height, font);
+    Image line(before.width() + 2 * height, 3 * height, 1);
+    OIIO::ImageBuf buffer(OIIO::ImageSpec(line.width, line.height, 1, OIIO::TypeDesc::FLOAT), line.pixels.data());
+    const float white = 1.f;
+    OIIO::ImageBufAlgo::render_text(buffer, 2, 2 * height, text, height, font, OIIO::cspan<float>(&white, 1));
+    const int from = 2 + before.width() - letter.width(), row = 2 * height - std::max(1, height / 4);
+    const int drop = std::max(2, int(std::lround(0.21 * height)));
+    for (int x = std::max(0, from - 1); x < std::min(line.width, from + (letter.width() + 1) / 2); ++x) {
+        const float cover = std::clamp(line.at(x, row)[0], 0.f, 1.f);
+        const int column = left + x - 2;
+        for (int y = std::max(0, baseline); y < std::min(image.height, baseline + drop); ++y)
+            if (column >= 0 && column < image.width)
+                image.setRgb(column, y, image.rgb(column, y) + (ink - image.rgb(column, y)) * cover);
+    }
 }
 
 } // namespace
@@ -48,7 +73,8 @@ bool drawText(Image& image, const std::string& words, float x, float y, int heig
               TextAlign align, float maxWidth) {
     if (words.empty())
         return true;
-    const std::string text = drawable(words);
+    std::string text = words;
+    const std::vector<std::size_t> mus = replaceMu(text);
     const std::string font = findFont();
     if (font.empty())
         return false;
@@ -63,9 +89,12 @@ bool drawText(Image& image, const std::string& words, float x, float y, int heig
     OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeDesc::FLOAT);
     OIIO::ImageBuf buffer(spec, image.pixels.data());
     const std::vector<float> colour = {ink.x, ink.y, ink.z, 1.f};
-    return OIIO::ImageBufAlgo::render_text(buffer, int(std::lround(x - shift * float(size.width()))),
-                                           int(std::lround(y)), text, height, font,
-                                           OIIO::cspan<float>(colour.data(), image.channels));
+    const int left = int(std::lround(x - shift * float(size.width()))), baseline = int(std::lround(y));
+    const bool drawn = OIIO::ImageBufAlgo::render_text(buffer, left, baseline, text, height, font,
+                                                       OIIO::cspan<float>(colour.data(), image.channels));
+    for (const std::size_t place : mus)
+        drawStem(image, text, place, left, baseline, height, font, ink);
+    return drawn;
 }
 
 ContactSheet makeContactSheet(const std::vector<LabelledImage>& images, const ContactSheetOptions& options) {

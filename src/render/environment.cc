@@ -17,7 +17,7 @@ Imath::V3f mix(const Imath::V3f& a, const Imath::V3f& b, float t) {
 
 // The set, in units in which a white card on the floor is about 1: a broad main box to the left, a weaker one filling
 // from the right, a strip behind on each side for the outline, and a lid.
-const StudioEnvironment::SoftBox studioBoxes[] = {
+const std::vector<StudioEnvironment::SoftBox> studioBoxes = {
     {-58.f, 30.f, 20.f, 34.f, {2.9f, 2.86f, 2.8f}}, {62.f, 20.f, 10.f, 30.f, {1.4f, 1.43f, 1.48f}},
     {-150.f, 26.f, 9.f, 34.f, {2.9f, 2.9f, 2.9f}},  {138.f, 28.f, 9.f, 34.f, {3.2f, 3.24f, 3.3f}},
     {180.f, 76.f, 24.f, 16.f, {1.4f, 1.4f, 1.4f}},
@@ -25,7 +25,14 @@ const StudioEnvironment::SoftBox studioBoxes[] = {
 
 } // namespace
 
-StudioEnvironment::StudioEnvironment(UpAxis up, float azimuthDegrees) : set_(uprightFrame(up, azimuthDegrees)) {
+const std::vector<StudioEnvironment::SoftBox>& StudioEnvironment::softBoxes() {
+    return studioBoxes;
+}
+
+StudioEnvironment::StudioEnvironment(UpAxis up, float azimuthDegrees, bool boxes)
+    : set_(uprightFrame(up, azimuthDegrees)) {
+    if (!boxes)
+        return;
     constexpr float radians = float(M_PI) / 180.f;
     for (const SoftBox& box : studioBoxes) {
         const float azimuth = box.azimuthDegrees * radians, elevation = box.elevationDegrees * radians;

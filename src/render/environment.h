@@ -43,7 +43,9 @@ class StudioEnvironment final : public Environment {
     };
 
     /// `azimuthDegrees` is the camera's: the set stands as seen by the viewer.
-    explicit StudioEnvironment(UpAxis up, float azimuthDegrees = 0.f);
+    /// Without `boxes` it is the dome alone, for lights that stand in the scene (lights.h, studioSet).
+    explicit StudioEnvironment(UpAxis up, float azimuthDegrees = 0.f, bool boxes = true);
+    static const std::vector<SoftBox>& softBoxes();
     Imath::V3f radiance(const Imath::V3f& direction) const override;
 
   private:

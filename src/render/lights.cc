@@ -83,6 +83,7 @@ Lights::Lights(std::shared_ptr<const Environment> environment, std::optional<Key
             luminances, {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)}, skyOnly));
     }
 
+    environmentPower_ = power / cells * M_PI;
     if (key_) {
         if (!(key_->angularRadiusDegrees >= 0.05f && key_->angularRadiusDegrees <= 60.f))
             throw RunError("key light", "its angular radius must be 0.05 to 60 degrees");
@@ -98,12 +99,21 @@ Lights::Lights(std::shared_ptr<const Environment> environment, std::optional<Key
         // A facing surface sees the key light's irradiance and, of the environment, at most about a quarter of its
         // radiance summed over the sphere.
         const double keyPower = luminance(key_->irradiance);
-        const double environmentPower = power / cells * M_PI;
         if (keyPower > 0.0)
-            keyChance_ = float(std::clamp(keyPower / (keyPower + environmentPower), 0.1, 0.9));
+            keyChance_ = float(std::clamp(keyPower / (keyPower + power / cells * M_PI), 0.1, 0.9));
         if (power == 0.0)
             keyChance_ = 1.f;
     }
+}
+
+void Lights::setAreaLights(AreaLightSet lights, float distance) {
+    area_ = std::move(lights);
+    const double others = environmentPower_ + (key_ ? luminance(key_->irradiance) : 0.f);
+    double mine = 0.0; // what a surface facing each light gets, about
+    for (const AreaLight& light : area_.lights())
+        mine += double(luminance(light.radiance)) * double(light.area()) /
+                std::max(double(light.area()), double(distance) * double(distance));
+    areaChance_ = area_.empty() ? 0.f : others > 0.0 ? float(std::clamp(mine / (mine + others), 0.1, 0.9)) : 1.f;
 }
 
 Lights::Table Lights::makeTable(const std::vector<float>& luminances, const Imath::V3f& normal, bool skyOnly) {
@@ -203,16 +213,64 @@ Imath::V3f Lights::irradiance(const Imath::V3f& normal) const {
     return Imath::V3f(sum);
 }
 
+namespace {
+
+// The lamp of both sets, as seen from the object.
+constexpr float lampAzimuth = -34.f, lampElevation = 42.f, lampRadius = 5.f;
+const Imath::V3f lampIrradiance(1.75f, 1.71f, 1.65f);
+
+Imath::V3f towards(const Frame& set, float azimuthDegrees, float elevationDegrees) {
+    const float azimuth = azimuthDegrees * pi / 180.f, elevation = elevationDegrees * pi / 180.f;
+    return ((set.tangent * std::sin(azimuth) - set.bitangent * std::cos(azimuth)) * std::cos(elevation) +
+            set.normal * std::sin(elevation))
+        .normalized();
+}
+
+} // namespace
+
 Lights studioLights(UpAxis up, float azimuthDegrees) {
-    const Frame set = uprightFrame(up, azimuthDegrees);
-    constexpr float azimuth = -34.f * pi / 180.f, elevation = 42.f * pi / 180.f;
     KeyLight key;
-    key.direction = ((set.tangent * std::sin(azimuth) - set.bitangent * std::cos(azimuth)) * std::cos(elevation) +
-                     set.normal * std::sin(elevation))
-                        .normalized();
-    key.angularRadiusDegrees = 5.f;
-    key.irradiance = Imath::V3f(1.75f, 1.71f, 1.65f);
+    key.direction = towards(uprightFrame(up, azimuthDegrees), lampAzimuth, lampElevation);
+    key.angularRadiusDegrees = lampRadius;
+    key.irradiance = lampIrradiance;
     return Lights(std::make_shared<StudioEnvironment>(up, azimuthDegrees), key, up, true);
+}
+
+Lights studioSet(UpAxis up, const Imath::Box3f& object, float azimuthDegrees) {
+    const float radius = 0.5f * object.size().length();
+    if (object.isEmpty() || !(radius > 0.f))
+        throw RunError("studio", "there is no object to put lights around");
+    constexpr float radii = 4.f;
+    const Frame set = uprightFrame(up, azimuthDegrees);
+    const float away = radii * radius;
+    std::vector<AreaLight> lights;
+    for (const StudioEnvironment::SoftBox& box : StudioEnvironment::softBoxes()) {
+        AreaLight light;
+        const Imath::V3f direction = towards(set, box.azimuthDegrees, box.elevationDegrees);
+        light.centre = object.center() + direction * away;
+        light.frame.normal = -direction;
+        light.frame.tangent = set.normal.cross(towards(set, box.azimuthDegrees, 0.f));
+        light.frame.bitangent = light.frame.normal.cross(light.frame.tangent);
+        light.halfWidth = away * std::tan(box.halfWidthDegrees * pi / 180.f);
+        light.halfHeight = away * std::tan(box.halfHeightDegrees * pi / 180.f);
+        light.radiance = box.radiance;
+        light.softEdge = 0.35f;
+        light.dimming = 0.35f;
+        lights.push_back(light);
+    }
+    AreaLight lamp;
+    lamp.shape = AreaLight::Shape::disc;
+    const Imath::V3f direction = towards(set, lampAzimuth, lampElevation);
+    lamp.centre = object.center() + direction * away;
+    lamp.frame = frameAround(-direction);
+    // A disc of radius r at distance d irradiates what faces it by pi L r² / (r² + d²).
+    lamp.halfWidth = away * std::tan(lampRadius * pi / 180.f);
+    const float sine = std::sin(lampRadius * pi / 180.f);
+    lamp.radiance = lampIrradiance / (pi * sine * sine);
+    lights.push_back(lamp);
+    Lights all(std::make_shared<StudioEnvironment>(up, azimuthDegrees, false), {}, up, true);
+    all.setAreaLights(AreaLightSet(std::move(lights)), away);
+    return all;
 }
 
 } // namespace patina

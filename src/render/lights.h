@@ -1,7 +1,10 @@
 #pragma once
-// All the light of a picture: an environment and a key light, sampled by importance.
+// All the light of a picture: an environment, a key light and lights in the scene, sampled by importance.
 
+#include "render/area_light.h"
 #include "render/environment.h"
+
+#include <Imath/ImathBox.h>
 
 #include <memory>
 #include <optional>
@@ -20,11 +23,12 @@ struct KeyLight {
     Imath::V3f radiance() const;
 };
 
-/// Every light here is infinitely far away: a light is a radiance over directions with a density to sample it by.
+/// Environment and key light are infinitely far away: radiances over directions with a density to sample them by. Area
+/// lights stand in the scene and are asked for at a place.
 /// Immutable after construction; safe from any thread.
 class Lights {
   public:
-    enum Source { environment, keyLight };
+    enum Source { environment, keyLight, areaLights };
 
     /// Environment and, optionally, a key light. `up` is the axis along which the tables of the environment stand.
     /// With `skyOnly` no shadow rays are sent below the horizon: right for a set with a floor, and for one without it
@@ -33,7 +37,13 @@ class Lights {
     explicit Lights(std::shared_ptr<const Environment> environment, std::optional<KeyLight> key = {},
                     UpAxis up = UpAxis::z, bool skyOnly = false);
 
-    /// Of one source, or of all together, from a unit direction.
+    /// Lights in the scene, besides the others. \param distance  from which they light the object, about: by it
+    /// their part of all light is judged
+    void setAreaLights(AreaLightSet lights, float distance);
+    const AreaLightSet& area() const { return area_; }
+    bool hasKey() const { return key_.has_value(); }
+
+    /// Of one source, or of both that are far away together, from a unit direction.
     Imath::V3f radiance(Source source, const Imath::V3f& direction) const;
     Imath::V3f radiance(const Imath::V3f& direction) const;
 
@@ -48,11 +58,18 @@ class Lights {
     /// Density with which sample() of this source draws a direction for this normal.
     float pdf(Source source, const Imath::V3f& normal, const Imath::V3f& direction) const;
     /// The part of the light that comes from this source, roughly: how often to choose it where only one is sampled.
-    float chance(Source source) const { return source == keyLight ? keyChance_ : 1.f - keyChance_; }
+    float chance(Source source) const {
+        return source == areaLights ? areaChance_
+                                    : (1.f - areaChance_) * (source == keyLight ? keyChance_ : 1.f - keyChance_);
+    }
 
     /// Irradiance on an unoccluded surface with this unit normal, by quadrature over the table (about 1 % for soft
     /// environments), the key light in closed form where its whole disc is above the surface.
     Imath::V3f irradiance(const Imath::V3f& normal) const;
+    /// The same at a place, with the lights in the scene.
+    Imath::V3f irradiance(const Imath::V3f& normal, const Imath::V3f& position) const {
+        return irradiance(normal) + area_.irradiance(position, normal);
+    }
 
   private:
     std::shared_ptr<const Environment> environment_;
@@ -62,6 +79,9 @@ class Lights {
     Imath::V3f keyRadiance_{0.f};
     float keyVersine_ = 0.f; ///< 1 - cos of the key light's angular radius
     float keyChance_ = 0.f;
+    AreaLightSet area_;
+    float areaChance_ = 0.f;
+    double environmentPower_ = 0.0; ///< roughly what a facing surface gets
 
     // The sphere in cells of equal solid angle: `columns` around, `rows` along the height above the horizon. One table
     // for each of a few normals, 20 degrees apart.
@@ -80,7 +100,12 @@ class Lights {
     Imath::V3f cellDirection(int row, int column, float down, float across) const;
 };
 
-/// Key light and set of the program's own pictures, as seen by a viewer at this azimuth.
+/// Key light and set of the program's own pictures, as seen by a viewer at this azimuth: all of it infinitely far away.
 Lights studioLights(UpAxis up, float azimuthDegrees = 0.f);
+
+/// The same set as lights that stand around the object, four of its radii away: a lamp and a broad soft box (key), one
+/// that fills from the right, a strip behind on each side (rim) and a lid, under a dim dome.
+/// \param object  what they are pointed at, scene units \throws RunError where it has no size
+Lights studioSet(UpAxis up, const Imath::Box3f& object, float azimuthDegrees = 0.f);
 
 } // namespace patina

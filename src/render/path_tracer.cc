@@ -11,6 +11,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <thread>
 
 namespace patina {
@@ -67,6 +68,13 @@ class PathWalk {
     /// One shadow ray to one light, chosen with this chance.
     template <typename Bsdf>
     void sampleLight(const Bsdf& bsdf, const StagePoint& point, const V3f& wo, Lights::Source source, float chance);
+    /// The same to the lights in the scene, which are sampled so often that their density counts `share` times.
+    template <typename Bsdf>
+    void sampleAreaLights(const Bsdf& bsdf, const StagePoint& point, const V3f& wo, float share);
+    /// Light in the scene that the ray passed before it met what is `farthest` away.
+    void meetAreaLights(float farthest);
+    /// How often the first surface samples them.
+    int areaLooks() const { return lights_.hasKey() ? 1 : 2; }
     /// The light of a path that leaves the scene.
     void meetLights();
     void add(V3f light, bool indirect);
@@ -113,6 +121,23 @@ void PathWalk::sampleLight(const Bsdf& bsdf, const StagePoint& point, const V3f&
 }
 
 template <typename Bsdf>
+void PathWalk::sampleAreaLights(const Bsdf& bsdf, const StagePoint& point, const V3f& wo, float share) {
+    const AreaLightSet::Sample towards = lights_.area().sample(point.origin, point.shading.normal, sampler_.next2());
+    const V3f wi = point.shading.toLocal(towards.direction);
+    const float density = towards.pdf * share;
+    if (!(density > 0.f) || wi.z <= 0.f)
+        return;
+    const V3f reflected = bsdf.evaluate(wo, wi) * (wi.z / density) * towards.radiance;
+    if (!(largest(reflected) > 0.f))
+        return;
+    ++rays_;
+    if (stage_.blocked(point, towards.direction, towards.distance))
+        return;
+    const float weight = leavesLightsToShadowRays(bsdf) ? 1.f : powerHeuristic(density, bsdf.pdf(wo, wi));
+    add(throughput_ * reflected * weight, depth_ > 0);
+}
+
+template <typename Bsdf>
 bool PathWalk::scatter(const Bsdf& bsdf, const StagePoint& point) {
     const V3f wo = point.shading.toLocal(-direction_);
     sampler_.seek(1 + depth_ * drawsPerVertex);
@@ -120,9 +145,15 @@ bool PathWalk::scatter(const Bsdf& bsdf, const StagePoint& point) {
     const float choice = sampler_.next1();
     if (depth_ == 0) {
         sampleLight(bsdf, point, wo, Lights::environment, 1.f);
-        sampleLight(bsdf, point, wo, Lights::keyLight, 1.f);
+        if (lights_.hasKey())
+            sampleLight(bsdf, point, wo, Lights::keyLight, 1.f);
+        for (int look = 0; look < areaLooks() && !lights_.area().empty(); ++look)
+            sampleAreaLights(bsdf, point, wo, float(areaLooks()));
+    } else if (choice < lights_.chance(Lights::areaLights)) {
+        sampleAreaLights(bsdf, point, wo, lights_.chance(Lights::areaLights));
     } else {
-        const auto source = choice < lights_.chance(Lights::keyLight) ? Lights::keyLight : Lights::environment;
+        const float past = choice - lights_.chance(Lights::areaLights);
+        const auto source = past < lights_.chance(Lights::keyLight) ? Lights::keyLight : Lights::environment;
         sampleLight(bsdf, point, wo, source, lights_.chance(source));
     }
 
@@ -158,13 +189,29 @@ void PathWalk::meetLights() {
     add(throughput_ * light, depth_ > 1);
 }
 
+void PathWalk::meetAreaLights(float farthest) {
+    if (lightsDone_ || depth_ == 0)
+        return;
+    const float share = depth_ == 1 ? float(areaLooks()) : lights_.chance(Lights::areaLights);
+    V3f light(0.f);
+    for (std::size_t k = 0; k < lights_.area().lights().size(); ++k)
+        if (const auto hit = lights_.area().hit(k, origin_, normal_, direction_, farthest))
+            light += hit->radiance * powerHeuristic(directionPdf_, hit->pdf * share);
+    if (largest(light) > 0.f)
+        add(throughput_ * light, depth_ > 1);
+}
+
 V3f PathWalk::radiance(const CameraRay& camera) {
     origin_ = camera.origin;
     direction_ = camera.direction;
     for (;; ++depth_) {
         ++rays_;
         StagePoint point;
-        switch (stage_.intersect(origin_, direction_, depth_ > 0, point)) {
+        const StageHit met = stage_.intersect(origin_, direction_, depth_ > 0, point);
+        if (!lights_.area().empty() && met != StageHit::inside)
+            meetAreaLights(met == StageHit::nothing ? std::numeric_limits<float>::infinity()
+                                                    : (point.position - origin_).length());
+        switch (met) {
         case StageHit::nothing: {
             if (depth_ == 0)
                 return stage_.seenByCamera(lights_, direction_);

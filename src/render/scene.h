@@ -5,6 +5,8 @@
 #include "render/frame.h"
 #include "surface/mesh.h"
 
+#include <Imath/ImathBox.h>
+
 #include <functional>
 #include <optional>
 
@@ -23,7 +25,10 @@ struct RenderScene {
 
     /// A matte floor under the lowest point, lit and shadowed, that fades into a plain backdrop with distance.
     bool ground = true;
+    /// What floor and backdrop are placed by, where several pictures share them; without it, the surface's own box.
+    std::optional<Imath::Box3f> setting;
     float groundAlbedo = 0.42f;
+    bool turntable = false; ///< on that floor a round table, under the object
     /// What the camera sees past a scene without ground; without it, the environment.
     std::optional<Imath::V3f> background;
 };

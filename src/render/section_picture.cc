@@ -91,14 +91,17 @@ SectionPicture drawSection(const LayerVolume& volume, const std::vector<SectionM
 
     SectionPicture picture;
     picture.meanThicknessUm.assign(std::size_t(volume.layerCount()), 0.0);
-    double highest = 0.0; // scene units as drawn
+    double highest = 0.0, deepest = 0.0; // above and below the metal as it was, scene units as drawn
+    std::vector<double> metalHeights(feet.size(), 0.0);
     std::size_t reached = 0;
     std::vector<double> stack(std::max<std::size_t>(1, picture.meanThicknessUm.size()));
-    for (const auto& there : feet)
-        if (there) {
+    for (std::size_t i = 0; i < feet.size(); ++i)
+        if (const auto& there = feet[i]) {
             ++reached;
             const auto reading = probe.read(there->position, there->normal, stack.data());
             highest = std::max(highest, reading.height);
+            metalHeights[i] = reading.metalHeight;
+            deepest = std::max(deepest, -reading.metalHeight);
             for (std::size_t k = 0; k < picture.meanThicknessUm.size(); ++k)
                 picture.meanThicknessUm[k] += stack[k];
         }
@@ -106,8 +109,11 @@ SectionPicture drawSection(const LayerVolume& volume, const std::vector<SectionM
         thickness /= double(std::max<std::size_t>(1, reached));
     picture.cutFraction = double(reached) / double(feet.size());
 
-    // The stack takes the middle half of the height, the metal a quarter below it.
-    const double fitting = highest > 0.0 ? 0.55 * cutHeight * unitsPerPixel / highest : 1.0;
+    // The stack takes the middle half of the height, the metal a quarter below it, more where it has pits.
+    const double fitting = highest > 0.0 || deepest > 0.0 ? std::min(0.55 * cutHeight / std::max(highest, 1e-30),
+                                                                     0.7 * cutHeight / (highest + deepest)) *
+                                                                unitsPerPixel
+                                                          : 1.0;
     double stretch = options.stretch > 0.0 ? options.stretch / scale.exaggeration : fitting;
     if (options.stretch <= 0.0 && stretch * scale.exaggeration > 1.0)
         stretch = std::max(1.0, roundLength(stretch * scale.exaggeration)) / scale.exaggeration;
@@ -121,7 +127,10 @@ SectionPicture drawSection(const LayerVolume& volume, const std::vector<SectionM
         picture.stretch = scale.exaggeration;
     }
     const double unitsPerRow = unitsPerPixel / stretch;
-    const double floorRow = 0.75 * cutHeight;
+    const double floorRow =
+        cutHeight * (1.0 - std::clamp(deepest / unitsPerRow / cutHeight + (deepest > 0.0 ? 0.1 : 0.0), 0.25, 0.55));
+    picture.rowsPerUm = scale.exaggeration / (scale.metresPerUnit * 1e6) / unitsPerRow;
+    picture.metalRow = top + floorRow;
     tbb::parallel_for(0, cutWidth, [&](int x) {
         for (int y = 0; y < cutHeight; ++y) {
             Imath::V3f colour(0.f);
@@ -136,9 +145,10 @@ SectionPicture drawSection(const LayerVolume& volume, const std::vector<SectionM
                     (sy == 0 ? above : below) = region;
                 } else if (feet[x]) {
                     const double height = (floorRow - (y + (sy + 0.5) / supersamples)) * unitsPerRow;
-                    // Below the line is metal, however thin the part is.
-                    const int region =
-                        height < 0.0 ? 0 : sampler.regionAt(feet[x]->position + feet[x]->normal * height);
+                    // Below what is left of the metal is metal, however thin the part is.
+                    const int region = height < metalHeights[std::size_t(x)]
+                                           ? 0
+                                           : sampler.regionAt(feet[x]->position + feet[x]->normal * height);
                     sample = region == SectionSampler::air ? sky : materials[std::size_t(region)].colour;
                     (sy == 0 ? above : below) = region;
                 }
@@ -148,6 +158,10 @@ SectionPicture drawSection(const LayerVolume& volume, const std::vector<SectionM
             // A line between layers, whose colours may be alike.
             if (above != below)
                 colour += (ink - colour) * 0.4f;
+            // Where the metal was, before it was eroded: a dashed line.
+            if (options.unrolled && y == int(floorRow) && metalHeights[std::size_t(x)] < -unitsPerRow &&
+                x / (letters / 2) % 2 == 0)
+                colour += (ink - colour) * 0.6f;
             picture.image.setRgb(left + x, top + y, colour);
         }
     });
@@ -166,7 +180,7 @@ SectionPicture drawSection(const LayerVolume& volume, const std::vector<SectionM
     drawNote(picture, readableLength(barUm), left + barPixels + letters / 2, barY + letters / 2, letters);
 
     const double rowUm = unitsPerRow * realUmPerUnit / scale.exaggeration;
-    const double heightUm = roundLength(0.4 * cutHeight * rowUm);
+    const double heightUm = roundLength(std::min(0.4 * cutHeight, 0.8 * floorRow) * rowUm);
     const int heightPixels = int(std::lround(heightUm / rowUm));
     const int heightX = left + cutWidth + margin / 2;
     fill(picture.image, heightX, top + int(floorRow) - heightPixels, heightX + 3, top + int(floorRow), ink);

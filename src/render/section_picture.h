@@ -32,11 +32,14 @@ struct SectionPicture {
     bool hasText = true;
     double stretch = 1.0;                ///< as drawn
     std::vector<double> meanThicknessUm; ///< of each layer along the cut, real
+    double rowsPerUm = 0.0;              ///< rows of pixels to a real micrometre of thickness
+    double metalRow = 0.0;               ///< the row of the metal's surface as it was before any erosion
     double cutFraction = 1.0;            ///< how much of the width the cut reached: less where the surface ends
 };
 
 /// Unrolls the metal's surface along the cut into a straight line and draws what stands on it, along its normals.
-/// Pores and overhangs are drawn where the volume has them.
+/// Pores and overhangs are drawn where the volume has them. Where the metal itself was eroded, what is left of it is
+/// drawn, and a dashed line where its surface was.
 /// \param materials  the metal, then the layers bottom to top
 /// \throws RunError where there is no metal at the place
 SectionPicture drawSection(const LayerVolume& volume, const std::vector<SectionMaterial>& materials,

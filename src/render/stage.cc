@@ -16,6 +16,11 @@ constexpr float fadeTo = 25.f;
 // The backdrop is darker than the lit floor: the object stands in a pool of light.
 constexpr float backdropShade = 0.42f;
 
+// Of the turntable: its radius in those of the circle around the object's footprint, its thickness in radii of the
+// object.
+constexpr float tableSize = 1.08f;
+constexpr float tableThickness = 0.05f;
+
 // Turns a shading normal just so far that a mirror ray along it does not go into the triangle (Keller et al. 2017, "The
 // Iray Light Transport Simulation and Rendering System", bends it likewise). Without it, silhouettes of coarse meshes
 // go black where the smooth normal looks away from the viewer.
@@ -48,7 +53,8 @@ float LambertBsdf::pdf(const V3f&, const V3f& wi) const {
 }
 
 Stage::Stage(const RenderScene& scene, const Lights& lights) : Stage(scene) {
-    backdrop_ = lights.irradiance(upright_.normal) * (scene.groundAlbedo / pi * backdropShade);
+    const V3f middle = centre_ + upright_.normal * (floorHeight_ - (centre_ ^ upright_.normal));
+    backdrop_ = lights.irradiance(upright_.normal, middle) * (scene.groundAlbedo / pi * backdropShade);
 }
 
 bool Stage::isInside(const V3f& position) const {
@@ -67,7 +73,7 @@ bool Stage::isInside(const V3f& position) const {
 
 Stage::Stage(const RenderScene& scene)
     : scene_(scene), rays_(scene.surface->positions, scene.surface->triangles), upright_(uprightFrame(scene.up)) {
-    const Imath::Box3f box = scene.surface->bounds();
+    const Imath::Box3f box = scene.setting ? *scene.setting : scene.surface->bounds();
     centre_ = box.center();
     radius_ = std::max(0.5f * box.size().length(), 1e-20f);
     float lowest = std::numeric_limits<float>::infinity();
@@ -76,8 +82,17 @@ Stage::Stage(const RenderScene& scene)
         lowest = std::min(lowest, p ^ upright_.normal);
         farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     }
+    if (scene.setting)
+        lowest = std::min(box.min ^ upright_.normal, box.max ^ upright_.normal); // up is an axis
     // A hair below, so that a sheet that lies on the floor is seen and not the floor.
     floorHeight_ = lowest - 1e-3f * radius_;
+    if (scene.ground && scene.turntable) {
+        V3f across = box.size();
+        across -= upright_.normal * (across ^ upright_.normal);
+        table_.emplace(centre_ + upright_.normal * (floorHeight_ - (centre_ ^ upright_.normal)), upright_.normal,
+                       tableSize * 0.5f * across.length(), tableThickness * radius_);
+        floorHeight_ -= table_->thickness();
+    }
     // A hit is placed by barycentric weights, to a few units in the last place of the coordinates.
     clearance_ = 4e-6f * std::max(farthest, radius_);
 }
@@ -85,6 +100,8 @@ Stage::Stage(const RenderScene& scene)
 StageHit Stage::intersect(const V3f& origin, const V3f& direction, bool indirect, StagePoint& point) const {
     float farthest = std::numeric_limits<float>::infinity();
     bool meetsFloor = false;
+    bool onTable = false;
+    V3f floorNormal = upright_.normal;
     if (scene_.ground) {
         const float height = (origin ^ upright_.normal) - floorHeight_;
         const float sinking = -(direction ^ upright_.normal);
@@ -92,6 +109,13 @@ StageHit Stage::intersect(const V3f& origin, const V3f& direction, bool indirect
             farthest = height / sinking;
             meetsFloor = true;
         }
+        if (table_)
+            if (const auto hit = table_->intersect(origin, direction, farthest)) {
+                farthest = hit->distance;
+                floorNormal = hit->normal;
+                meetsFloor = true;
+                onTable = true;
+            }
     }
     if (const auto hit = rays_.intersect(origin, direction, 0.f, farthest)) {
         const bool back = (hit->geometricNormal ^ direction) > 0.f;
@@ -103,9 +127,10 @@ StageHit Stage::intersect(const V3f& origin, const V3f& direction, bool indirect
     if (!meetsFloor)
         return StageHit::nothing;
     point.position = origin + direction * farthest;
-    point.position += upright_.normal * (floorHeight_ - (point.position ^ upright_.normal));
-    point.origin = point.position + upright_.normal * clearance_;
-    point.shading = upright_;
+    if (!onTable)
+        point.position += upright_.normal * (floorHeight_ - (point.position ^ upright_.normal));
+    point.origin = point.position + floorNormal * clearance_;
+    point.shading = onTable && floorNormal != upright_.normal ? frameAround(floorNormal) : upright_;
     return StageHit::ground;
 }
 
@@ -144,8 +169,16 @@ bool Stage::facesFloor(const StagePoint& from, const V3f& direction) const {
 }
 
 bool Stage::blocked(const StagePoint& from, const V3f& direction) const {
-    return facesFloor(from, direction) ||
-           rays_.occluded(from.origin, direction, 0.f, std::numeric_limits<float>::infinity());
+    constexpr float infinite = std::numeric_limits<float>::infinity();
+    return facesFloor(from, direction) || (table_ && table_->intersect(from.origin, direction, infinite)) ||
+           rays_.occluded(from.origin, direction, 0.f, infinite);
+}
+
+bool Stage::blocked(const StagePoint& from, const V3f& direction, float distance) const {
+    if (scene_.ground && (from.origin ^ upright_.normal) + (direction ^ upright_.normal) * distance < floorHeight_)
+        return true;
+    return (table_ && table_->intersect(from.origin, direction, distance)) ||
+           rays_.occluded(from.origin, direction, 0.f, distance * 0.9999f);
 }
 
 float Stage::backdropShare(const V3f& floorPoint) const {

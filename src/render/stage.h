@@ -4,6 +4,7 @@
 #include "optics/patina_bsdf.h"
 #include "render/lights.h"
 #include "render/scene.h"
+#include "render/turntable.h"
 #include "surface/ray_scene.h"
 
 namespace patina {
@@ -46,8 +47,9 @@ class Stage {
     StageHit intersect(const Imath::V3f& origin, const Imath::V3f& direction, bool indirect, StagePoint& point) const;
     /// Whether a ray to a light far away would end on the floor: known without tracing it.
     bool facesFloor(const StagePoint& from, const Imath::V3f& direction) const;
-    /// Whether anything stands between the point and a light far away.
+    /// Whether anything stands between the point and a light far away, or one at a distance.
     bool blocked(const StagePoint& from, const Imath::V3f& direction) const;
+    bool blocked(const StagePoint& from, const Imath::V3f& direction, float distance) const;
 
     PatinaBsdf material(const StagePoint& point) const { return scene_.material(point.surface, point.position); }
     LambertBsdf groundBsdf() const { return {scene_.groundAlbedo}; }
@@ -67,6 +69,7 @@ class Stage {
     Imath::V3f centre_;
     float radius_;      ///< half the diagonal of the box around the surface
     float floorHeight_; ///< along up
+    std::optional<Turntable> table_;
     float clearance_;   ///< rays start this far from what they leave
     Imath::V3f backdrop_{0.f};
 };

@@ -82,6 +82,35 @@ TEST(ContactSheet, longLabelsShrinkToTheirCell) {
     EXPECT_NEAR(0.5 * (left + right), 200.0, 8.0);
 }
 
+// A µ is a u that goes on below the line, where its left stem is; and it shifts nothing else.
+TEST(ContactSheet, aMicrometreIsNotAUm) {
+    const auto drawn = [](const std::string& words, bool& hasFont) {
+        Image image(300, 80, 3, 1.f);
+        hasFont = drawText(image, words, 20.f, 50.f, 40, Imath::V3f(0.f));
+        return image;
+    };
+    bool hasFont = false;
+    const Image mu = drawn("12 µm", hasFont), u = drawn("12 um", hasFont);
+    if (!hasFont)
+        GTEST_SKIP() << "no font is installed";
+    int below = 0, differing = 0, left = mu.width, right = 0, lastOfWord = 0;
+    for (int y = 0; y < mu.height; ++y)
+        for (int x = 0; x < mu.width; ++x) {
+            if (u.at(x, y)[0] < 0.5f)
+                lastOfWord = std::max(lastOfWord, x);
+            if (std::abs(mu.at(x, y)[0] - u.at(x, y)[0]) < 0.25f)
+                continue;
+            ++differing;
+            below += y >= 50;
+            left = std::min(left, x), right = std::max(right, x);
+        }
+    EXPECT_GT(below, 12) << "a stem of several pixels";
+    EXPECT_LE(differing - below, 6) << "above the line nothing changes but where the stem joins";
+    EXPECT_LE(right - left, 8) << "one stem";
+    EXPECT_GT(left, 60) << "behind the digits";
+    EXPECT_LT(right, lastOfWord - 30) << "before the m";
+}
+
 TEST(ContactSheet, refusesNoPicturesAndBrokenOnes) {
     EXPECT_THROW(makeContactSheet({}), RunError);
     EXPECT_THROW(makeContactSheet({{Image(), "a"}}), RunError);

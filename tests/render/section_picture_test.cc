@@ -1,6 +1,7 @@
 #include "render/section_picture.h"
 
 #include "operators/coat.h"
+#include "operators/erode.h"
 #include "support/test_surfaces.h"
 
 #include <gtest/gtest.h>
@@ -50,6 +51,30 @@ TEST(SectionPicture, StretchStretchesThicknessOnly) {
     const int column = low.width / 4;
     EXPECT_NEAR(rowsOf(high, column, materials[2].colour) / double(rowsOf(low, column, materials[2].colour)), 2.0,
                 0.12);
+}
+
+// Metal that was eroded is not drawn: half of the cut stands 3 µm lower.
+TEST(SectionPicture, ErodedMetalIsAPit) {
+    auto piece = test::makePiece(test::sphere(30.f, 5), test::voxelScale());
+    Workpiece work = piece->work();
+    const test::FunctionMap pit([](const MapPoint& point) { return point.position.y > 0.0 ? 1.0 : 0.0; });
+    erode(work, 3.0, &pit, {}, piece->progress, 1.0);
+    coat(work, "cuprite_2", 0.5, nullptr, piece->progress);
+    SectionOptions options;
+    options.at = Imath::V3d(30.0, 0.0, 0.0);
+    options.along = Imath::V3d(0.0, 1.0, 0.0);
+    options.width = 20.0;
+    for (const double stretch : {0.0, 1.5}) {
+        options.stretch = stretch;
+        const SectionPicture section = drawSection(*piece->volume, materials, options);
+        const int whole = section.image.width / 8, pitted = section.image.width / 2;
+        const int missing =
+            rowsOf(section.image, whole, materials[0].colour) - rowsOf(section.image, pitted, materials[0].colour);
+        EXPECT_NEAR(missing / section.rowsPerUm, 3.0, 0.15) << stretch;
+        // The layer lies on the floor of the pit as thick as beside it.
+        EXPECT_NEAR(rowsOf(section.image, pitted, materials[1].colour) / section.rowsPerUm, 0.5, 0.1) << stretch;
+        EXPECT_GT(rowsOf(section.image, pitted, materials[0].colour), 5) << "there is metal under the pit";
+    }
 }
 
 TEST(SectionPicture, FindsAStretchThatFits) {

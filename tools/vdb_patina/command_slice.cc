@@ -24,7 +24,12 @@ namespace {
 struct Arguments {
     std::string volume;
     SectionInput section;
+    bool graph = false;
 };
+
+std::string nameOf(const LayerVolume& volume, int region) {
+    return region < 0 ? "air" : region == 0 ? volume.metal() : volume.layers()[std::size_t(region - 1)];
+}
 
 void slice(const Arguments& arguments, const Options& options, Console& console) {
     if (options.pictureSize < 320)
@@ -33,8 +38,9 @@ void slice(const Arguments& arguments, const Options& options, Console& console)
     const LayerVolume volume = readVolume(arguments.volume);
     const MaterialLibrary library = MaterialLibrary::load(findDataFolder());
     const std::string name = std::filesystem::path(arguments.volume).stem().string();
-    const SectionPicture picture = makeSection(volume, library, arguments.section, options.pictureSize, name, console,
-                                               RegionRequest::of(volume, arguments.volume).existing);
+    const std::optional<Region> region = RegionRequest::of(volume, arguments.volume).existing;
+    const SectionPicture picture =
+        makeSection(volume, library, arguments.section, options.pictureSize, name, console, region);
     if (!picture.hasText)
         console.warning("no font was found on this machine: the picture has no labels");
     if (picture.cutFraction < 0.999)
@@ -45,6 +51,17 @@ void slice(const Arguments& arguments, const Options& options, Console& console)
     for (std::size_t k = picture.meanThicknessUm.size(); k-- > 0;)
         console.info(fmt::format("{:<24} {}", volume.layers()[k], readableLength(picture.meanThicknessUm[k])));
     console.result(file.string());
+    if (!arguments.graph)
+        return;
+    const StackGraph graph =
+        makeStackGraph(volume, library, arguments.section, options.pictureSize, name, console, region);
+    const auto graphFile = file.parent_path() / (name + "_graph.png");
+    writePng(graph.image, graphFile, {{"Software", "vdb-patina " PATINA_VERSION}});
+    for (std::size_t i = graph.spans.size(); i-- > 0;) {
+        const StackSpan& span = graph.spans[i];
+        console.info(fmt::format("{:<24} {:.6g} to {:.6g} µm", nameOf(volume, span.region), span.fromUm, span.toUm));
+    }
+    console.result(graphFile.string());
 }
 
 } // namespace
@@ -66,12 +83,19 @@ void addSliceCommand(CLI::App& app, Options& options, Action& action) {
         ->add_option("--width", arguments->section.width, "Length of the cut: µm, or with a unit (default: 48 voxels)")
         ->type_name("LENGTH")
         ->group(group);
-    command->add_option("--stretch", arguments->section.stretch, "Draw thickness so many times (default: to fit)")
-        ->check(numberAboveZero())
-        ->type_name("E")
+    auto* stretch =
+        command->add_option("--stretch", arguments->section.stretch, "Draw thickness so many times (default: to fit)")
+            ->check(numberAboveZero())
+            ->type_name("E")
+            ->group(group);
+    command
+        ->add_flag("--in-place", arguments->section.inPlace,
+                   "The plane as it is, instead of the surface unrolled and thickness stretched")
+        ->excludes(stretch)
         ->group(group);
-    command->add_flag("--in-place", arguments->section.inPlace,
-                      "The plane as it is, instead of the surface unrolled and thickness stretched")
+    command
+        ->add_flag("--graph", arguments->graph,
+                   "Also NAME_graph.png: the stack along the normal at the middle of the cut, heights in µm")
         ->group(group);
     command->add_flag("--by-id", arguments->section.byId, "A colour for each layer instead of its own")->group(group);
     command->add_option("--picture", options.pictureSize, "Pixels across (default 640)")

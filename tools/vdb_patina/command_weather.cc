@@ -5,6 +5,7 @@
 #include "console.h"
 #include "data_folder.h"
 #include "outputs.h"
+#include "view_input.h"
 #include "weather_series.h"
 
 #include "base/errors.h"
@@ -35,6 +36,9 @@ struct Arguments {
     bool extremes = false;
     std::optional<double> latitude;
     std::string maps = "last";
+    bool render = false;
+    int between = 0;
+    double framesPerSecond = 12.0;
 };
 
 // "30" with a number of frames, or "A:B:STEP".
@@ -79,6 +83,9 @@ void runHistory(const Arguments& arguments, const WeatherPlan& plan, const Weath
     series.model = arguments.model;
     series.environment = arguments.environment;
     series.maps = arguments.maps;
+    series.film = arguments.render;
+    series.between = arguments.between;
+    series.framesPerSecond = arguments.framesPerSecond;
     series.frames = weatherScripts(plan, kinetics, years, arguments.environment);
     if (options.dryRun) {
         for (const WeatherFrame& frame : series.frames)
@@ -99,6 +106,18 @@ void runHistory(const Arguments& arguments, const WeatherPlan& plan, const Weath
     console.result((folder / "contact_sheet.png").string());
 }
 
+// Before years are run through, not after.
+void checkPictures(const Arguments& arguments, const Options& options) {
+    if (arguments.render && options.pictureSize == 0)
+        throw Error(ExitCode::commandLine, "--render", "a film of pictures of 0 pixels", "leave --picture 0 out");
+    if (arguments.between > 0 && options.from == "volume")
+        throw Error(ExitCode::commandLine, "--between",
+                    "what lies between two frames is shown on the displaced mesh, not on voxels",
+                    "leave --from volume out");
+    if (options.pictureSize > 0 && options.light != "studio")
+        lightsOf(options, 0.f, {}); // any but the studio stand alone
+}
+
 void weather(const Arguments& arguments, const Options& options, Console& console) {
     const std::vector<double> years = yearsOf(arguments);
     WeatherPlan plan = readWeatherPlan(findDataFolder(), arguments.environment, arguments.metal);
@@ -109,6 +128,7 @@ void weather(const Arguments& arguments, const Options& options, Console& consol
     patinaThicknessUm(plan, kinetics, 1.0); // an unknown category is told before anything is made
     if (arguments.extremes && arguments.category.empty())
         throw Error(ExitCode::commandLine, "--extremes", "only a category has a range", "give one with --category");
+    checkPictures(arguments, options);
     const fs::path folder =
         options.dryRun ? fs::path() : outputFolder(options, fs::path(arguments.model).stem().string() + "_weather");
     if (!arguments.extremes) {
@@ -168,7 +188,25 @@ void addWeatherCommand(CLI::App& app, Options& options, Action& action) {
     addVolumeOptions(*command, options);
     addMapOptions(*command, options);
     addPictureOptions(*command, options, framePictures);
+    addRenderOptions(*command, options);
     addRunOptions(*command, options);
+    const std::string film = "Time-lapse";
+    auto* render =
+        command
+            ->add_flag("--render", arguments->render, "A time-lapse: the pictures as a film, where ffmpeg is installed")
+            ->group(film);
+    command
+        ->add_option("--between", arguments->between,
+                     "Pictures between one frame and the next, of the stack's thicknesses in between (default 0)")
+        ->check(wholeNumberWithin(0, 1000))
+        ->needs(render)
+        ->type_name("N")
+        ->group(film);
+    command->add_option("--fps", arguments->framesPerSecond, "Pictures of the film in a second (default 12)")
+        ->check(numberWithin(0.1, 240.0))
+        ->needs(render)
+        ->type_name("N")
+        ->group(film);
     command->add_flag("--resume", options.resume, "Go on with an interrupted series in the same folder")->group("Run");
     command->callback([&options, &action, arguments, command] {
         takeDefaults(*command, framePictures, options);

@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> optionKeys = {"voxels",       "resolution", "picture",  "samples",
-                                             "exaggeration", "azimuth",    "elevation"};
+const std::vector<std::string> optionKeys = {"voxels",       "resolution", "picture",   "samples",
+                                             "exaggeration", "azimuth",    "elevation", "region_at"};
 
 std::vector<std::string> withOptions(std::vector<std::string> keys) {
     keys.insert(keys.end(), optionKeys.begin(), optionKeys.end());
@@ -36,6 +36,8 @@ FigureOptions readOptions(TomlReader& reader, const toml::table& table) {
     out.exaggeration = reader.number(table, "exaggeration", 1e-9, 1e9);
     out.azimuth = reader.number(table, "azimuth", -360.0, 360.0);
     out.elevation = reader.number(table, "elevation", -89.0, 89.0);
+    if (const std::string region = reader.word(table, "region_at"); !region.empty())
+        out.regionAt = region;
     return out;
 }
 
@@ -47,18 +49,62 @@ FigurePanel::Kind kindNamed(TomlReader& reader, const toml::table& table) {
         return FigurePanel::Kind::map;
     if (word == "curves")
         return FigurePanel::Kind::curves;
+    if (word == "stack")
+        return FigurePanel::Kind::stack;
+    if (word == "diagram")
+        return FigurePanel::Kind::diagram;
     if (word == "stages")
         return FigurePanel::Kind::stages;
     if (word != "picture")
         reader.error(*table.get("kind"), fmt::format("'{}' is not a kind of panel", word),
-                     "picture, slice, map, curves or stages");
+                     "picture, slice, stack, map, curves, diagram or stages");
     return FigurePanel::Kind::picture;
+}
+
+std::vector<std::string> wordList(TomlReader& reader, const toml::table& table, const char* key) {
+    std::vector<std::string> words;
+    const toml::node* node = table.get(key);
+    if (!node)
+        return words;
+    const toml::array* array = node->as_array();
+    for (std::size_t i = 0; array && i < array->size(); ++i)
+        if (const auto* text = (*array)[i].as_string())
+            words.push_back(text->get());
+    if (!array || words.size() != array->size())
+        reader.error(*node, fmt::format("'{}' must be a list of texts", key));
+    return words;
+}
+
+// place = [row, column] or [row, column, rows, columns]
+std::optional<FigurePlace> readPlace(TomlReader& reader, const toml::table& table) {
+    const toml::node* node = table.get("place");
+    if (!node)
+        return std::nullopt;
+    std::vector<int> numbers;
+    if (const toml::array* array = node->as_array()) {
+        for (const toml::node& one : *array) {
+            const auto number = one.value_exact<std::int64_t>();
+            numbers.push_back(number && *number >= 0 && *number < 100 ? int(*number) : -1);
+        }
+    }
+    FigurePlace place;
+    if ((numbers.size() != 2 && numbers.size() != 4) || std::count(numbers.begin(), numbers.end(), -1) > 0 ||
+        (numbers.size() == 4 && (numbers[2] < 1 || numbers[3] < 1))) {
+        reader.error(*node, "'place' must be [row, column] or [row, column, rows, columns]",
+                     "rows and columns count from 0");
+        return place;
+    }
+    place.row = numbers[0], place.column = numbers[1];
+    if (numbers.size() == 4)
+        place.rows = numbers[2], place.columns = numbers[3];
+    return place;
 }
 
 FigurePanel readPanel(TomlReader& reader, const toml::table& table, const fs::path& dataFolder,
                       const FigureOptions& outer, std::size_t number) {
     reader.allowOnly(table, withOptions({"kind", "label", "script", "text", "model", "set", "map", "at", "along",
-                                         "width", "stretch", "by_id", "in_place", "environment", "years", "replaceable"}));
+                                         "width", "stretch", "by_id", "in_place", "environment", "years", "replaceable",
+                                         "environments", "key", "place"}));
     FigurePanel panel;
     panel.kind = kindNamed(reader, table);
     panel.label = reader.word(table, "label");
@@ -74,20 +120,21 @@ FigurePanel readPanel(TomlReader& reader, const toml::table& table, const fs::pa
     panel.environment = reader.word(table, "environment");
     panel.years = reader.number(table, "years", 0.1, 1e4).value_or(30.0);
     panel.replaceable = reader.truth(table, "replaceable");
-    if (const toml::node* settings = table.get("set")) {
-        const toml::array* array = settings->as_array();
-        for (std::size_t i = 0; array && i < array->size(); ++i)
-            if (const auto* text = (*array)[i].as_string())
-                panel.set.push_back(text->get());
-        if (!array || panel.set.size() != array->size())
-            reader.error(*settings, "'set' must be a list of texts, as in [\"year=6\"]");
-    }
+    panel.set = wordList(reader, table, "set");
+    panel.environments = wordList(reader, table, "environments");
+    panel.key = wordList(reader, table, "key");
+    panel.place = readPlace(reader, table);
+    if (panel.inPlace && panel.stretch > 0.0)
+        reader.error(table, "a section in place is not stretched", "leave 'stretch' or 'in_place' out");
     panel.name = fmt::format("panel_{:02}", number);
     panel.script = reader.word(table, "text");
     const std::string file = reader.word(table, "script");
     if (panel.kind == FigurePanel::Kind::stages) {
         if (panel.environment.empty())
             reader.error(table, "stages need an 'environment'");
+    } else if (panel.kind == FigurePanel::Kind::diagram) {
+        if (panel.environments.empty())
+            reader.error(table, "a diagram needs 'environments'");
     } else if (file.empty() == panel.script.empty()) {
         reader.error(table, "a panel has either a 'script' or a 'text'");
     } else if (!file.empty()) {
@@ -132,6 +179,7 @@ FigureOptions FigureOptions::over(const FigureOptions& outer) const {
     take(out.exaggeration, exaggeration);
     take(out.azimuth, azimuth);
     take(out.elevation, elevation);
+    take(out.regionAt, regionAt);
     return out;
 }
 
@@ -149,6 +197,7 @@ void FigureOptions::apply(Options& options) const {
         options.azimuth = azimuth;
     if (elevation)
         options.elevation = elevation;
+    put(options.regionAt, regionAt);
 }
 
 std::vector<int> figureNumbers(const fs::path& dataFolder) {
@@ -188,6 +237,10 @@ FigurePlan readFigurePlan(const fs::path& dataFolder, int number) {
     }
     if (findings.empty() && plan.series.empty() && plan.panels.empty())
         reader.error(SourcePlace{path.string(), 1, 1}, "the figure shows nothing", "it needs [[panel]] or [[series]]");
+    const auto places = std::count_if(plan.panels.begin(), plan.panels.end(),
+                                      [](const FigurePanel& panel) { return panel.place.has_value(); });
+    if (places > 0 && (std::size_t(places) < plan.panels.size() || !plan.series.empty()))
+        reader.error(SourcePlace{path.string(), 1, 1}, "some panels have a place and others do not");
     if (!findings.empty())
         throw ScriptError(findings);
     return plan;

@@ -14,10 +14,17 @@ namespace patina::tool {
 struct FigureOptions {
     std::optional<int> voxels, resolution, picture, samples;
     std::optional<double> exaggeration, azimuth, elevation;
+    std::optional<std::string> regionAt; ///< "x,y,z,size"
 
     /// These, and `outer` where these are not set.
     FigureOptions over(const FigureOptions& outer) const;
     void apply(Options& options) const;
+};
+
+/// Cells of the figure's grid, from 0 at the top left.
+struct FigurePlace {
+    int row = 0, column = 0;
+    int rows = 1, columns = 1;
 };
 
 struct FigurePanel {
@@ -26,6 +33,8 @@ struct FigurePanel {
         slice,   ///< a core sample
         map,     ///< one of the baked maps, over the UV square
         curves,  ///< the script's curves over the years
+        stack,   ///< a graph of the stack along one normal
+        diagram, ///< the stages of the weather in several environments, with the minerals they are of
         stages,  ///< what the weather lays down in an environment, over the years
     };
     Kind kind = Kind::picture;
@@ -42,6 +51,8 @@ struct FigurePanel {
     bool inPlace = false;
     std::string environment;        ///< kind stages
     double years = 30.0;            ///< kind stages
+    std::vector<std::string> environments, key; ///< kind diagram: its columns, and materials to name below
+    std::optional<FigurePlace> place;           ///< of all panels or of none
     bool replaceable = false; ///< --model puts another model in
 };
 
@@ -58,6 +69,8 @@ struct FigurePlan {
     int columns = 0;
     std::vector<FigureSeries> series; ///< each in rows of its own, before the panels
     std::vector<FigurePanel> panels;
+
+    bool isPlaced() const { return !panels.empty() && panels.front().place.has_value(); }
 };
 
 /// Numbers of the figures that there are.

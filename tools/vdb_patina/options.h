@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,8 @@ class App;
 }
 
 namespace patina::tool {
+
+struct View;
 
 enum class ProgressStyle { automatic, bar, plain, json, none };
 
@@ -74,6 +77,7 @@ struct Options {
     std::string viewTransform = "filmic";
     double exposureStops = 0.0;
     double seconds = 0.0; ///< to render in; 0: as long as all samples take
+    std::shared_ptr<const View> view; ///< one camera for all pictures of a series; null: each its own
 
     // The run.
     std::vector<std::string> settings; ///< NAME=VALUE

@@ -72,7 +72,49 @@ void checkSize(const View& view, const Options& options) {
                     "make it smaller");
 }
 
+// A close-up shows grain only where the voxels are as fine as its pixels.
+void sayWhereVoxelsAreCoarse(const LayerVolume& volume, const View& view, const Options& options, Console& console) {
+    if (!view.patch)
+        return;
+    const int pixels = std::min(view.width, view.height);
+    const double across = volume.scale().voxelSize / (*view.patch / pixels);
+    if (across < 2.0)
+        return;
+    const LayerVolume::Provenance& made = volume.provenance;
+    console.notice(fmt::format("the volume's voxels are {:.2g} pixels wide in this close-up; for finer grain, run {} on "
+                               "{} again with --region-at {} --voxels {} and render that",
+                               across, made.scriptName.empty() ? "the script" : "'" + made.scriptName + "'",
+                               made.model.empty() ? "the model" : "'" + made.model + "'", options.closeUp, pixels));
+}
+
 } // namespace
+
+void exposePicture(const RenderScene& scene, const View& view, const FeaturesAt& featuresAt, const Options& options,
+                   const std::filesystem::path& file, const std::string& description, Console& console) {
+    checkSize(view, options);
+    RenderOptions settings;
+    settings.width = view.width;
+    settings.height = view.height;
+    settings.samples = options.samples;
+    settings.seconds = options.seconds;
+    const Lights lights =
+        lightsOf(options, view.from.azimuthDegrees, scene.setting ? *scene.setting : scene.surface->bounds());
+    const Rendering rendering = render(scene, view.camera, lights, settings, console);
+    if (options.seconds > 0.0)
+        console.info(fmt::format("{} samples per pixel", rendering.samples));
+
+    const ImageMetadata metadata{{"Software", "vdb-patina " PATINA_VERSION}, {"Description", description}};
+    if (options.exr) {
+        const Features features = renderFeatures(scene, featuresAt, view.camera, view.width, view.height,
+                                                 std::min(16, rendering.samples), 0, console);
+        std::filesystem::path exr = file;
+        writeExrPicture(rendering.image, &features, exr.replace_extension(".exr"), metadata);
+    }
+    ViewOptions display;
+    display.transform = options.viewTransform == "srgb" ? ViewTransform::srgb : ViewTransform::filmic;
+    display.exposureStops = float(options.exposureStops);
+    writePng(displayImage(rendering.image, display), file, metadata);
+}
 
 void writePicture(const LayerVolume& volume, const Model& model, const StackOptics& optics, const Options& options,
                   const std::filesystem::path& file, Console& console) {
@@ -86,39 +128,22 @@ void writePicture(const LayerVolume& volume, const Model& model, const StackOpti
     subject.fromModel = [&](const Imath::V3d& point) { return surface.fromModel(point); };
     subject.unitsPerModelUnit = model.magnification();
     subject.metresPerModelUnit = volume.scale().metresPerUnit * model.magnification();
-    const View view = viewOf(options, subject);
-    checkSize(view, options);
+    const View view = options.view ? *options.view : viewOf(options, subject);
+    if (!options.view)
+        sayWhereVoxelsAreCoarse(volume, view, options, console);
 
-    RenderOptions settings;
-    settings.width = view.width;
-    settings.height = view.height;
-    settings.samples = options.samples;
-    settings.seconds = options.seconds;
     RenderScene scene;
     scene.surface = &surface.surface();
     scene.up = options.up;
+    scene.setting = view.setting;
     scene.ground = options.floor && !model.region;
+    scene.turntable = options.light == "studio";
     if (model.region && options.light == "studio")
         scene.background = Imath::V3f(0.18f);
     scene.material = [&](const SurfacePoint& point, const Imath::V3f&) { return shader.bsdf(surface.onModel(point)); };
-    const Lights lights = lightsOf(options, view.from.azimuthDegrees);
-    const Rendering rendering = render(scene, view.camera, lights, settings, console);
-    if (options.seconds > 0.0)
-        console.info(fmt::format("{} samples per pixel", rendering.samples));
-
-    const ImageMetadata metadata{{"Software", "vdb-patina " PATINA_VERSION},
-                                 {"Description", volume.provenance.scriptName}};
-    if (options.exr) {
-        const Features features = renderFeatures(
-            scene, [&](const SurfacePoint& point) { return shader.features(surface.onModel(point)); }, view.camera,
-            view.width, view.height, std::min(16, rendering.samples), 0, console);
-        std::filesystem::path exr = file;
-        writeExrPicture(rendering.image, &features, exr.replace_extension(".exr"), metadata);
-    }
-    ViewOptions display;
-    display.transform = options.viewTransform == "srgb" ? ViewTransform::srgb : ViewTransform::filmic;
-    display.exposureStops = float(options.exposureStops);
-    writePng(displayImage(rendering.image, display), file, metadata);
+    exposePicture(
+        scene, view, [&](const SurfacePoint& point) { return shader.features(surface.onModel(point)); }, options, file,
+        volume.provenance.scriptName, console);
 }
 
 } // namespace patina::tool

@@ -56,40 +56,60 @@ Imath::V3f colourOfId(std::size_t id) {
     return colour;
 }
 
-} // namespace
-
-SectionPicture makeSection(const LayerVolume& volume, const MaterialLibrary& library, const SectionInput& input,
-                           int pictureWidth, const std::string& title, Console& console,
-                           const std::optional<Region>& region) {
+std::vector<SectionMaterial> materialsOf(const LayerVolume& volume, const MaterialLibrary& library, bool byId) {
     std::vector<SectionMaterial> materials;
     std::vector<std::string> names{volume.metal()};
     names.insert(names.end(), volume.layers().begin(), volume.layers().end());
     for (std::size_t k = 0; k < names.size(); ++k) {
         const Material* material = library.find(names[k]);
-        materials.push_back({names[k], input.byId || !material ? colourOfId(k) : encoded(material->swatch)});
+        materials.push_back({names[k], byId || !material ? colourOfId(k) : encoded(material->swatch)});
     }
+    return materials;
+}
+
+// In the volume's coordinates.
+Imath::V3d placeOf(const LayerVolume& volume, const SectionInput& input, Console& console,
+                   const std::optional<Region>& region) {
+    if (!input.at.empty()) {
+        const Imath::V3d at = pointOf("--at", input.at);
+        return region ? region->toLocal(at) : at;
+    }
+    const Imath::V3d place = SectionSampler(volume).typicalPlace().position;
+    const Imath::V3d at = region ? region->toModel(place) : place;
+    console.info(
+        fmt::format("cut at ({:.9g}, {:.9g}, {:.9g}), where the stack is most like its mean", at.x, at.y, at.z));
+    return place;
+}
+
+} // namespace
+
+SectionPicture makeSection(const LayerVolume& volume, const MaterialLibrary& library, const SectionInput& input,
+                           int pictureWidth, const std::string& title, Console& console,
+                           const std::optional<Region>& region) {
     SectionOptions section;
     section.title = title;
     section.pictureWidth = pictureWidth;
     section.stretch = input.stretch;
     section.unrolled = !input.inPlace;
-    if (input.at.empty()) {
-        section.at = SectionSampler(volume).typicalPlace().position;
-        const Imath::V3d at = region ? region->toModel(section.at) : section.at;
-        console.info(
-            fmt::format("cut at ({:.9g}, {:.9g}, {:.9g}), where the stack is most like its mean", at.x, at.y, at.z));
-    } else {
-        section.at = pointOf("--at", input.at);
-        if (region)
-            section.at = region->toLocal(section.at);
-    }
+    section.at = placeOf(volume, input, console, region);
     if (!input.along.empty())
         section.along = pointOf("--along", input.along);
     if (section.along.length() == 0.0)
         throw Error(ExitCode::commandLine, "--along", "a direction of length 0");
     if (!input.width.empty())
         section.width = lengthOf(input.width) * 1e-6 / volume.scale().metresPerUnit;
-    return drawSection(volume, materials, section);
+    return drawSection(volume, materialsOf(volume, library, input.byId), section);
+}
+
+StackGraph makeStackGraph(const LayerVolume& volume, const MaterialLibrary& library, const SectionInput& input,
+                          int pictureWidth, const std::string& title, Console& console,
+                          const std::optional<Region>& region) {
+    StackGraphOptions graph;
+    graph.title = title;
+    graph.width = pictureWidth;
+    graph.height = pictureWidth * 3 / 4;
+    graph.at = placeOf(volume, input, console, region);
+    return drawStackGraph(volume, materialsOf(volume, library, input.byId), graph);
 }
 
 } // namespace patina::tool

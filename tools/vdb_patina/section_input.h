@@ -5,6 +5,7 @@
 
 #include "optics/material_library.h"
 #include "render/section_picture.h"
+#include "render/stack_graph.h"
 #include "volume/layer_volume.h"
 #include "volume/region.h"
 
@@ -28,5 +29,10 @@ struct SectionInput {
 SectionPicture makeSection(const LayerVolume& volume, const MaterialLibrary& materials, const SectionInput& input,
                            int pictureWidth, const std::string& title, Console& console,
                            const std::optional<Region>& region = {});
+
+/// The stack along the normal at the section's place.
+StackGraph makeStackGraph(const LayerVolume& volume, const MaterialLibrary& materials, const SectionInput& input,
+                          int pictureWidth, const std::string& title, Console& console,
+                          const std::optional<Region>& region = {});
 
 } // namespace patina::tool

@@ -127,15 +127,28 @@ View viewOf(const Options& options, const Subject& subject) {
         view.camera = Camera::aimed(subject.surface->bounds().center(), float(*distance), view.from, ratio);
     else
         view.camera = Camera::framed(subject.surface->positions, view.from, ratio);
+    if (closeUp)
+        view.patch = closeUp->size;
     if (options.fStop > 0.0)
         giveLens(view.camera, view.from, options, subject);
     return view;
 }
 
-Lights lightsOf(const Options& options, float cameraAzimuthDegrees) {
+View stillViewOf(const Options& options, const Model& model) {
+    Subject subject;
+    subject.surface = &model.surface;
+    subject.fromModel = [&](const Imath::V3d& point) { return Imath::V3f(model.toLocal(point)); };
+    subject.unitsPerModelUnit = model.magnification();
+    subject.metresPerModelUnit = model.scale.metresPerUnit * model.magnification();
+    View view = viewOf(options, subject);
+    view.setting = model.surface.bounds();
+    return view;
+}
+
+Lights lightsOf(const Options& options, float cameraAzimuthDegrees, const Imath::Box3f& object) {
     const std::string& light = options.light;
     if (light == "studio")
-        return studioLights(options.up, cameraAzimuthDegrees + float(options.turnLight));
+        return studioSet(options.up, object, cameraAzimuthDegrees + float(options.turnLight));
     if (light == "uniform")
         return Lights(std::make_shared<UniformEnvironment>(Imath::V3f(float(options.lightStrength))), {}, options.up);
     if (light == "sky" || light == "overcast") {

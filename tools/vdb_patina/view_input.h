@@ -1,6 +1,7 @@
 #pragma once
 // Camera and light as they are asked for on a command line.
 
+#include "model_input.h"
 #include "options.h"
 
 #include "render/camera.h"
@@ -9,6 +10,7 @@
 #include <Imath/ImathBox.h>
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace patina::tool {
@@ -26,12 +28,18 @@ struct View {
     Camera camera;
     CameraView from;
     int width = 0, height = 0; ///< pixels
+    std::optional<float> patch; ///< the side of a close-up, in the picture's units
+    std::optional<Imath::Box3f> setting; ///< what floor and backdrop are placed by; not set: the surface shown
 };
 
 /// \throws Error (command line) where --camera or --closeup cannot be read or a close-up meets no surface
 View viewOf(const Options& options, const Subject& subject);
 
+/// The view for a series of pictures: framed on the bare model, whatever grows on it later, and on a floor that stays.
+View stillViewOf(const Options& options, const Model& model);
+
 /// \throws Error (command line), RunError where a panorama cannot be used
-Lights lightsOf(const Options& options, float cameraAzimuthDegrees);
+/// \param object  that the studio's lights stand around, in the picture's coordinates
+Lights lightsOf(const Options& options, float cameraAzimuthDegrees, const Imath::Box3f& object);
 
 } // namespace patina::tool

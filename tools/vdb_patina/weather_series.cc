@@ -1,8 +1,11 @@
 #include "weather_series.h"
 
 #include "data_folder.h"
+#include "existing_volume.h"
 #include "outputs.h"
 #include "script_run.h"
+#include "time_lapse.h"
+#include "view_input.h"
 
 #include "base/atomic_file.h"
 #include "base/errors.h"
@@ -23,8 +26,9 @@ bool isDone(const fs::path& folder, const std::string& name, const std::string& 
            readTextFile(scriptFile.string()) == script;
 }
 
+// \param view  of the whole series: found by the first frame that is run
 void runFrame(const WeatherFrame& frame, const fs::path& folder, const WeatherSeries& series, const Options& given,
-              bool withMaps, const MaterialLibrary& materials, Console& console) {
+              std::shared_ptr<const View>& view, bool withMaps, const MaterialLibrary& materials, Console& console) {
     Options options = given;
     options.output = folder.string();
     options.report.clear();
@@ -34,6 +38,9 @@ void runFrame(const WeatherFrame& frame, const fs::path& folder, const WeatherSe
     writeTextFile(scriptFile, frame.script);
     const Task task = prepareTask(scriptFile.string(), series.model, materials, options, console);
     checkBudget(task, options, console);
+    if (!view && options.pictureSize > 0)
+        view = std::make_shared<const View>(stillViewOf(options, task.model));
+    options.view = view;
     reportFile(options, folder);
     RunResult result = runProgram(task.program, task.model.surface, materials, runOptionsOf(task, options), console);
     if (result.interrupted)
@@ -42,12 +49,21 @@ void runFrame(const WeatherFrame& frame, const fs::path& folder, const WeatherSe
     writeResults(task, result, nlohmann::ordered_json::array(), materials, options, folder, console);
 }
 
+// Where all frames were done by an earlier run.
+std::shared_ptr<const View> viewOfFrame(const fs::path& volume, const std::string& model, const Options& options,
+                                        Console& console) {
+    return std::make_shared<const View>(
+        stillViewOf(options, loadExisting(volume.string(), model, options, console).model));
+}
+
 } // namespace
 
 std::vector<LabelledImage> runWeatherSeries(const WeatherSeries& series, const Options& options, const fs::path& folder,
                                             Console& console) {
     const MaterialLibrary materials = MaterialLibrary::load(findDataFolder());
     std::vector<LabelledImage> pictures;
+    std::shared_ptr<const View> view = options.view;
+    TimeLapse lapse{series.model, series.environment, {}, series.film ? series.between : 0, series.framesPerSecond};
     for (std::size_t i = 0; i < series.frames.size(); ++i) {
         const WeatherFrame& frame = series.frames[i];
         const fs::path here = folder / frame.folder;
@@ -57,7 +73,7 @@ std::vector<LabelledImage> runWeatherSeries(const WeatherSeries& series, const O
             console.notice("done by an earlier run");
         } else {
             try {
-                runFrame(frame, here, series, options, withMaps, materials, console);
+                runFrame(frame, here, series, options, view, withMaps, materials, console);
             } catch (const Interrupted&) {
                 throw Error(ExitCode::interrupted, "weather",
                             fmt::format("interrupted in year {:g}; {} of {} frames are finished and saved", frame.year,
@@ -65,14 +81,23 @@ std::vector<LabelledImage> runWeatherSeries(const WeatherSeries& series, const O
                             "the same command with --resume goes on from there");
             }
         }
+        lapse.volumes.push_back(here / (series.environment + ".vdb"));
         if (options.pictureSize > 0) {
             const fs::path picture = here / "preview.png";
             // Numbered for programs that read image sequences.
-            fs::copy_file(picture, folder / fmt::format("{}_{:04}.png", series.environment, i + 1),
-                          fs::copy_options::overwrite_existing);
+            fs::path numbered = pictureNumbered(folder, series.environment, numberOfFrame(i, lapse.between));
+            fs::copy_file(picture, numbered, fs::copy_options::overwrite_existing);
+            if (options.exr && fs::exists(here / "preview.exr"))
+                fs::copy_file(here / "preview.exr", numbered.replace_extension(".exr"),
+                              fs::copy_options::overwrite_existing);
             pictures.push_back(
                 {readPng(picture), fmt::format("{:g} year{}", frame.year, frame.year == 1.0 ? "" : "s")});
         }
+    }
+    if (series.film && options.pictureSize > 0) {
+        Options shown = options;
+        shown.view = view ? view : viewOfFrame(lapse.volumes.front(), series.model, options, console);
+        writeTimeLapse(lapse, shown, folder, console);
     }
     return pictures;
 }

@@ -1,0 +1,165 @@
+#include "render/area_light.h"
+
+#include "base/errors.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace patina {
+
+using Imath::V2f;
+using Imath::V3f;
+
+namespace {
+
+constexpr float pi = float(M_PI);
+
+float luminance(const V3f& c) {
+    return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
+}
+
+float smoothStep(float from, float to, float x) {
+    const float t = std::clamp((x - from) / (to - from), 0.f, 1.f);
+    return t * t * (3.f - 2.f * t);
+}
+
+// Of a light's plane, -1…1 each, evenly over its shape. Discs by Shirley and Chiu's concentric map, which keeps
+// neighbours neighbours.
+V2f pointOn(AreaLight::Shape shape, const V2f& random) {
+    const V2f p(2.f * random.x - 1.f, 2.f * random.y - 1.f);
+    if (shape == AreaLight::Shape::rectangle || (p.x == 0.f && p.y == 0.f))
+        return p;
+    const bool wide = std::abs(p.x) > std::abs(p.y);
+    const float r = wide ? p.x : p.y;
+    const float phi = wide ? 0.25f * pi * p.y / p.x : 0.5f * pi - 0.25f * pi * p.x / p.y;
+    return {r * std::cos(phi), r * std::sin(phi)};
+}
+
+} // namespace
+
+float AreaLight::area() const {
+    return shape == Shape::disc ? pi * halfWidth * halfWidth : 4.f * halfWidth * halfHeight;
+}
+
+V3f AreaLight::radianceAt(float u, float v) const {
+    if (shape == Shape::disc)
+        return u * u + v * v <= 1.f ? radiance : V3f(0.f);
+    u = std::abs(u), v = std::abs(v);
+    if (u > 1.f || v > 1.f)
+        return V3f(0.f);
+    float share = 1.f - dimming * std::min(u * u + v * v, 1.f);
+    if (softEdge > 0.f)
+        share *= (1.f - smoothStep(1.f - softEdge, 1.f, u)) * (1.f - smoothStep(1.f - softEdge, 1.f, v));
+    return radiance * share;
+}
+
+AreaLightSet::AreaLightSet(std::vector<AreaLight> lights) : lights_(std::move(lights)) {
+    for (AreaLight& light : lights_) {
+        if (light.shape == AreaLight::Shape::disc)
+            light.halfHeight = light.halfWidth;
+        if (!(light.halfWidth > 0.f) || !(light.halfHeight > 0.f) || !std::isfinite(light.halfWidth + light.halfHeight))
+            throw RunError("area light", "its sides must be above 0");
+        if (!(std::min({light.radiance.x, light.radiance.y, light.radiance.z}) >= 0.f) ||
+            !std::isfinite(light.radiance.x + light.radiance.y + light.radiance.z))
+            throw RunError("area light", "its radiance is negative or not finite");
+        if (!(light.softEdge >= 0.f && light.softEdge <= 1.f && light.dimming >= 0.f && light.dimming <= 1.f))
+            throw RunError("area light", "its edge and dimming must be 0 to 1");
+        power_ += double(luminance(light.radiance)) * double(light.area());
+    }
+}
+
+float AreaLightSet::weight(std::size_t k, const V3f& position, const V3f& normal) const {
+    const AreaLight& light = lights_[k];
+    const V3f towards = light.centre - position;
+    const float size = std::max(light.halfWidth, light.halfHeight);
+    // No nearer than its size: from close by, other parts of it than the middle are what is seen.
+    const float distance2 = std::max(towards.length2(), size * size), distance = std::sqrt(distance2);
+    if ((-towards ^ light.frame.normal) <= 0.f)
+        return 0.f; // its plane is the border of what sees it
+    // Its middle may lie below the horizon while a part is above it.
+    const float cosine = std::clamp((towards ^ normal) / distance, 0.f, 1.f) + std::min(1.f, size / distance) * 0.5f;
+    const float facing = std::clamp((-towards ^ light.frame.normal) / distance, 0.05f, 1.f);
+    return luminance(light.radiance) * light.area() * cosine * facing / distance2;
+}
+
+float AreaLightSet::density(std::size_t k, const V3f& position, const V3f& normal, float cosine, float distance) const {
+    float total = 0.f;
+    for (std::size_t i = 0; i < lights_.size(); ++i)
+        total += weight(i, position, normal);
+    return weight(k, position, normal) / total * distance * distance / (cosine * lights_[k].area());
+}
+
+AreaLightSet::Sample AreaLightSet::sample(const V3f& position, const V3f& normal, V2f random) const {
+    float total = 0.f;
+    for (std::size_t k = 0; k < lights_.size(); ++k)
+        total += weight(k, position, normal);
+    if (!(total > 0.f))
+        return {};
+    float left = random.x * total;
+    std::size_t chosen = lights_.size();
+    for (std::size_t k = 0; k < lights_.size(); ++k) {
+        const float mine = weight(k, position, normal);
+        if (!(mine > 0.f))
+            continue;
+        chosen = k;
+        if (left < mine) {
+            random.x = std::min(left / mine, 0.9999999f); // its place within the choice is as good as a new number
+            break;
+        }
+        left -= mine;
+    }
+    const AreaLight& light = lights_[chosen];
+    const V2f p = pointOn(light.shape, random);
+    const V3f towards = light.centre + light.frame.tangent * (p.x * light.halfWidth) +
+                        light.frame.bitangent * (p.y * light.halfHeight) - position;
+    Sample sample;
+    sample.distance = towards.length();
+    if (!(sample.distance > 0.f))
+        return {};
+    sample.direction = towards / sample.distance;
+    const float cosine = -(sample.direction ^ light.frame.normal);
+    if (!(cosine > 1e-6f))
+        return {};
+    sample.radiance = light.radianceAt(p.x, p.y);
+    sample.pdf = weight(chosen, position, normal) / total * sample.distance * sample.distance / (cosine * light.area());
+    return sample;
+}
+
+std::optional<AreaLightSet::Sample> AreaLightSet::hit(std::size_t k, const V3f& position, const V3f& normal,
+                                                      const V3f& direction, float farthest) const {
+    const AreaLight& light = lights_[k];
+    const float cosine = -(direction ^ light.frame.normal);
+    if (!(cosine > 1e-6f))
+        return {};
+    Sample sample;
+    sample.direction = direction;
+    sample.distance = ((position - light.centre) ^ light.frame.normal) / cosine;
+    if (!(sample.distance > 0.f && sample.distance < farthest))
+        return {};
+    const V3f place = position + direction * sample.distance - light.centre;
+    sample.radiance = light.radianceAt((place ^ light.frame.tangent) / light.halfWidth,
+                                       (place ^ light.frame.bitangent) / light.halfHeight);
+    if (luminance(sample.radiance) == 0.f)
+        return {};
+    sample.pdf = density(k, position, normal, cosine, sample.distance);
+    return sample;
+}
+
+V3f AreaLightSet::irradiance(const V3f& position, const V3f& normal) const {
+    constexpr int looks = 32;
+    Imath::V3d sum(0.0);
+    for (const AreaLight& light : lights_)
+        for (int i = 0; i < looks * looks; ++i) {
+            const V2f p = pointOn(light.shape, {(float(i % looks) + 0.5f) / looks, (float(i / looks) + 0.5f) / looks});
+            const V3f towards = light.centre + light.frame.tangent * (p.x * light.halfWidth) +
+                                light.frame.bitangent * (p.y * light.halfHeight) - position;
+            const float distance2 = towards.length2();
+            const float cosines = std::max(0.f, towards ^ normal) * std::max(0.f, -(towards ^ light.frame.normal));
+            if (cosines > 0.f)
+                sum += Imath::V3d(light.radianceAt(p.x, p.y)) *
+                       (double(cosines) * double(light.area()) / (double(distance2) * distance2 * looks * looks));
+        }
+    return V3f(sum);
+}
+
+} // namespace patina

@@ -1,0 +1,286 @@
+#include "figure_maker.h"
+
+#include "data_folder.h"
+#include "outputs.h"
+#include "picture.h"
+#include "section_input.h"
+#include "stage_diagram.h"
+#include "weather_series.h"
+
+#include "base/atomic_file.h"
+#include "base/errors.h"
+#include "export/bake.h"
+#include "optics/colour.h"
+#include "optics/toml_reader.h"
+#include "render/chart.h"
+#include "render/film.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace patina::tool {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+Image imageOfMap(const MapImage& map) {
+    Image image(map.size, map.size);
+    const auto valueAt = [&](std::size_t i) { return map.floats.empty() ? float(map.halves[i]) : map.floats[i]; };
+    const std::size_t count = std::size_t(map.size) * map.size * map.channels;
+    float most = map.channels == 1 ? 1e-30f : 1.f; // of lengths and shares the largest is white
+    for (std::size_t i = 0; i < count && map.channels == 1; ++i)
+        most = std::max(most, valueAt(i));
+    for (int y = 0; y < map.size; ++y)
+        for (int x = 0; x < map.size; ++x) {
+            const std::size_t first = (std::size_t(y) * map.size + x) * map.channels;
+            Imath::V3f colour;
+            for (int c = 0; c < 3; ++c) {
+                const float value = valueAt(first + (map.channels == 1 ? 0 : c)) / most;
+                colour[c] = map.channels == 1 ? std::max(0.f, value) : float(encodeSrgb(value));
+            }
+            image.setRgb(x, y, colour);
+        }
+    return image;
+}
+
+// The part of a map that the model's charts use: outside them are only their gutters.
+Image cutToCharts(const Image& map, const SurfaceMesh& surface) {
+    Imath::Box2f charts;
+    for (const Imath::V2f& uv : surface.uvs)
+        charts.extendBy(uv);
+    const auto texel = [](float share, int size) { return std::clamp(int(std::lround(share * float(size))), 0, size); };
+    const int left = texel(charts.min.x, map.width), right = texel(charts.max.x, map.width);
+    const int top = texel(1.f - charts.max.y, map.height), bottom = texel(1.f - charts.min.y, map.height);
+    Image cut(right - left, bottom - top);
+    for (int y = 0; y < cut.height; ++y)
+        for (int x = 0; x < cut.width; ++x)
+            cut.setRgb(x, y, map.rgb(left + x, top + y));
+    return cut.empty() ? map : cut;
+}
+
+ChartOptions chartOptions(const Options& options, const std::string& y, bool stacked) {
+    ChartOptions chart;
+    chart.width = options.pictureSize;
+    chart.height = options.pictureSize * 9 / 16;
+    chart.xLabel = "years";
+    chart.yLabel = y;
+    chart.stacked = stacked;
+    return chart;
+}
+
+// What a material's file says that it is mixed of.
+std::vector<std::pair<std::string, double>> partsOf(const std::string& material) {
+    const toml::table table =
+        toml::parse(readTextFile((findDataFolder() / "materials" / (material + ".toml")).string()));
+    std::vector<std::pair<std::string, double>> parts;
+    if (const toml::array* list = table["mixture"]["parts"].as_array())
+        for (const toml::node& one : *list)
+            if (const toml::table* part = one.as_table())
+                parts.emplace_back((*part)["material"].value_or(std::string()), (*part)["volume"].value_or(0.0));
+    return parts;
+}
+
+std::string spaced(std::string name) {
+    std::replace(name.begin(), name.end(), '_', ' ');
+    return name;
+}
+
+} // namespace
+
+FigureMaker::FigureMaker(const Options& options, double scale, fs::path folder, Console& console)
+    : options_(options), scale_(scale), folder_(std::move(folder)), console_(console),
+      materials_(MaterialLibrary::load(findDataFolder())) {}
+
+Options FigureMaker::optionsOf(const FigureOptions& what) const {
+    Options options = options_;
+    what.apply(options);
+    const auto scaled = [&](int value, int least, double factor) {
+        return std::max(least, int(std::lround(value * factor)));
+    };
+    options.pictureSize = scaled(options.pictureSize, 16, scale_);
+    options.resolution = scaled(options.resolution, 16, scale_);
+    options.voxels = scaled(options.voxels, 24, scale_);
+    options.samples = scaled(options.samples, 1, scale_ * scale_);
+    return options;
+}
+
+std::vector<LabelledImage> FigureMaker::series(const FigureSeries& what) {
+    const Options options = optionsOf(what.options);
+    const WeatherPlan plan = readWeatherPlan(findDataFolder(), what.environment, "copper");
+    std::vector<double> years;
+    for (int i = 0; i < what.frames; ++i)
+        years.push_back(what.lastYear * i / (what.frames - 1));
+    WeatherSeries run;
+    run.model = what.model;
+    run.environment = what.environment;
+    run.maps = "none";
+    run.frames = weatherScripts(plan, {}, years, what.environment);
+    auto pictures = runWeatherSeries(run, options, folder_ / what.environment, console_);
+    for (LabelledImage& picture : pictures)
+        picture.label = fmt::format("{}, {}", what.environment, picture.label);
+    return pictures;
+}
+
+LabelledImage FigureMaker::panel(const FigurePanel& what, const std::string& otherModel) {
+    Options options = optionsOf(what.options);
+    options.settings.insert(options.settings.end(), what.set.begin(), what.set.end());
+    const std::string model = what.replaceable && !otherModel.empty() ? otherModel : what.model;
+    console_.notice(fmt::format("panel '{}'", what.label));
+    switch (what.kind) {
+    case FigurePanel::Kind::stages:
+        return {stages(what, options), what.label};
+    case FigurePanel::Kind::diagram:
+        return {diagram(what, options), what.label};
+    case FigurePanel::Kind::curves:
+        return {curves(what, options), what.label};
+    default:
+        break;
+    }
+    make(what, model, options);
+    SectionInput input;
+    input.at = what.at;
+    input.along = what.along;
+    input.width = what.width;
+    input.stretch = what.stretch;
+    input.byId = what.byId;
+    input.inPlace = what.inPlace;
+    switch (what.kind) {
+    case FigurePanel::Kind::map:
+        return {map(what, options), what.label};
+    case FigurePanel::Kind::slice:
+        return {
+            makeSection(*made_.volume, materials_, input, options.pictureSize, "", console_, made_.task->model.region)
+                .image,
+            what.label};
+    case FigurePanel::Kind::stack:
+        return {makeStackGraph(*made_.volume, materials_, input, options.pictureSize, "", console_,
+                               made_.task->model.region)
+                    .image,
+                what.label};
+    default:
+        break;
+    }
+    const StackOptics optics = opticsOf(*made_.volume, materials_, options);
+    const fs::path file = folder_ / (what.name + fmt::format("_{:02}.png", ++pictures_));
+    writePicture(*made_.volume, made_.task->model, optics, options, file, console_);
+    return {readPng(file), what.label};
+}
+
+Image FigureMaker::map(const FigurePanel& what, const Options& options) {
+    const StackOptics optics = opticsOf(*made_.volume, materials_, options);
+    BakeOptions bakeOptions;
+    bakeOptions.resolution = options.pictureSize;
+    const MapSet maps = bake(*made_.volume, made_.task->model.surface, optics, bakeOptions, console_);
+    const MapImage* map = maps.find(what.map);
+    if (!map) {
+        std::vector<std::string> names;
+        for (const MapImage& one : maps.maps)
+            names.push_back(one.name);
+        throw RunError(what.name, fmt::format("there is no map '{}'", what.map),
+                       fmt::format("there are {}", fmt::join(names, ", ")));
+    }
+    return cutToCharts(imageOfMap(*map), made_.task->model.surface);
+}
+
+Image FigureMaker::stages(const FigurePanel& what, const Options& options) const {
+    const WeatherPlan plan = readWeatherPlan(findDataFolder(), what.environment, "copper");
+    std::vector<ChartSeries> series;
+    for (const WeatherOxide& oxide : plan.oxides)
+        series.push_back({oxide.material, colourOf(oxide.material), {}, {}});
+    for (const WeatherMineral& mineral : plan.minerals)
+        series.push_back({mineral.material, colourOf(mineral.material), {}, {}});
+    constexpr int points = 60;
+    for (int i = 0; i <= points; ++i) {
+        const double year = what.years * i / points;
+        const auto thickness = layerThicknessesUm(plan, {}, year);
+        for (std::size_t k = 0; k < series.size(); ++k) {
+            series[k].x.push_back(year);
+            series[k].y.push_back(thickness[k]);
+        }
+    }
+    return drawChart(series, chartOptions(options, "µm", true)).image;
+}
+Image FigureMaker::diagram(const FigurePanel& what, const Options& options) const {
+    const auto named = [&](const std::string& material, double share = 1.0) {
+        return DiagramColour{spaced(material), colourOf(material), share};
+    };
+    std::vector<DiagramColumn> columns;
+    for (const std::string& environment : what.environments) {
+        const WeatherPlan plan = readWeatherPlan(findDataFolder(), environment, "copper");
+        DiagramColumn column{environment, named(plan.metal), {}};
+        const auto add = [&](const std::string& material, const std::string& when) {
+            DiagramStage stage{named(material), when, {}};
+            for (const auto& [part, share] : partsOf(material))
+                stage.parts.push_back(named(part, share));
+            std::sort(stage.parts.begin(), stage.parts.end(),
+                      [](const DiagramColour& a, const DiagramColour& b) { return a.share > b.share; });
+            column.stages.push_back(std::move(stage));
+        };
+        for (const WeatherOxide& oxide : plan.oxides)
+            add(oxide.material,
+                fmt::format("towards {:g} µm; two thirds of it after {:g} years", oxide.thicknessUm, oxide.years));
+        for (const WeatherMineral& mineral : plan.minerals) {
+            std::string when =
+                fmt::format("from year {:g}, everywhere by year {:g}", mineral.begins.first, mineral.begins.second);
+            for (const WeatherConversion& turning : plan.conversions)
+                if (turning.from == mineral.material)
+                    when += fmt::format("; half becomes {} in {:g} years", spaced(turning.to), turning.halfLifeYears);
+            add(mineral.material, when);
+        }
+        columns.push_back(std::move(column));
+    }
+    std::vector<DiagramColour> key;
+    for (const std::string& material : what.key)
+        key.push_back(named(material));
+    return drawStageDiagram(columns, key, options.pictureSize).image;
+}
+
+Image FigureMaker::curves(const FigurePanel& what, const Options& options) const {
+    CheckContext context = checkContext(materials_, options);
+    const Program program = readProgram(what.script, what.name, context);
+    std::vector<ChartSeries> series;
+    for (const Curve& curve : program.curves) {
+        // Hues apart from each other, dark enough for a line.
+        const float hue = 6.2832f * float(series.size()) / float(program.curves.size());
+        ChartSeries one{curve.name,
+                        Imath::V3f(0.45f) +
+                            Imath::V3f(std::cos(hue), std::cos(hue - 2.094f), std::cos(hue + 2.094f)) * 0.38f,
+                        {},
+                        {}};
+        for (const auto& [year, value] : curve.points) {
+            one.x.push_back(year);
+            one.y.push_back(value);
+        }
+        series.push_back(std::move(one));
+    }
+    return drawChart(series, chartOptions(options, "µm", false)).image;
+}
+Imath::V3f FigureMaker::colourOf(const std::string& material) const {
+    const Imath::V3f& linear = materials_.at(material).swatch;
+    return {float(encodeSrgb(linear.x)), float(encodeSrgb(linear.y)), float(encodeSrgb(linear.z))};
+}
+void FigureMaker::make(const FigurePanel& what, const std::string& model, const Options& options) {
+    std::string key =
+        fmt::format("{}\n{}\n{} {} {}\n", what.script, model, options.voxels, options.exaggeration, options.regionAt);
+    for (const std::string& setting : options.settings)
+        key += setting + "\n";
+    if (made_.key == key)
+        return;
+    made_ = {};
+    const fs::path script = folder_ / (what.name + ".patina");
+    writeTextFile(script, what.script);
+    Task task = prepareTask(script.string(), model, materials_, options, console_);
+    checkBudget(task, options, console_);
+    RunResult result = runProgram(task.program, task.model.surface, materials_, runOptionsOf(task, options), console_);
+    if (result.interrupted)
+        throw Interrupted();
+    made_.task = std::move(task);
+    made_.volume = std::move(result.volume);
+    made_.key = key;
+}
+
+} // namespace patina::tool
