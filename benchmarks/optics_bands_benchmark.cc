@@ -11,7 +11,8 @@
 namespace patina {
 namespace {
 
-/// A spectrum known at evenly spaced bands, read every 5 nm through the four (or two) nearest, constant beyond the ends.
+/// A spectrum known at evenly spaced bands, read every 5 nm through the four (or two) nearest, constant beyond the
+/// ends.
 FineSpectrum read(const std::vector<double>& bands, double firstNm, double lastNm, bool cubic) {
     const int count = static_cast<int>(bands.size()), points = cubic ? 4 : 2;
     const double step = (lastNm - firstNm) / (count - 1);

@@ -77,7 +77,8 @@ void StackBody(benchmark::State& state) {
 }
 BENCHMARK(StackBody)->Threads(1)->Threads(2)->UseRealTime();
 
-// ---- Kubelka and Munk's fold from tables in thickness -----------------------------------------------------------------
+// ---- Kubelka and Munk's fold from tables in thickness
+// -----------------------------------------------------------------
 
 /// R0 and T² - R0² of one material by log2 of the thickness, 2^-10 … 2^7 µm: R <- (R0 + (T² - R0²) R) / (1 - R0 R).
 struct ThicknessTable {
@@ -126,7 +127,8 @@ PATINA_INLINE void foldTabled(const TabledStack& stack, const float* um, Spectru
     (over / under).store(result);
 }
 
-// ---- three channels, a vector of points at a time ---------------------------------------------------------------------
+// ---- three channels, a vector of points at a time
+// ---------------------------------------------------------------------
 
 struct ThreeChannels {
     float kappa[3][layerCount], scattering[3][layerCount], absorption[3][layerCount], base[3];

@@ -106,8 +106,8 @@ struct Decay {
 
 /// For x >= 0; beyond exp(-60) it stays there: nothing that is left of it becomes a denormal number, which would cost a
 /// hundred times as much.
-/// -x = n ln 2 + r with |r| <= ln 2 / 2, a polynomial for exp(r) - 1 (Cephes' coefficients), and n added to the exponent
-/// of exp(r). Where n = 0 the polynomial is 1 - exp(-x) without the cancellation.
+/// -x = n ln 2 + r with |r| <= ln 2 / 2, a polynomial for exp(r) - 1 (Cephes' coefficients), and n added to the
+/// exponent of exp(r). Where n = 0 the polynomial is 1 - exp(-x) without the cancellation.
 template <int width>
 PATINA_INLINE Decay<width> decay(const BandLanes<width>& x) {
     using Bits = typename Register<width>::Bits;
@@ -155,8 +155,8 @@ PATINA_INLINE void dotBands(const BandLanes<width>& a, const Spectrum* weights, 
                 eights = __builtin_shufflevector(product.part[0], product.part[0], 0, 1, 2, 3, 4, 5, 6, 7) +
                          __builtin_shufflevector(product.part[0], product.part[0], 8, 9, 10, 11, 12, 13, 14, 15);
             }
-            fours[channel] =
-                __builtin_shufflevector(eights, eights, 0, 1, 2, 3) + __builtin_shufflevector(eights, eights, 4, 5, 6, 7);
+            fours[channel] = __builtin_shufflevector(eights, eights, 0, 1, 2, 3) +
+                             __builtin_shufflevector(eights, eights, 4, 5, 6, 7);
         }
     }
     const Four twos01 = __builtin_shufflevector(fours[0], fours[1], 0, 4, 1, 5) +

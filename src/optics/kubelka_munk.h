@@ -70,8 +70,8 @@ Real interreflected(Real transmittance, Real reflectance, Real other) {
 /// Reflectance of a layer over an opaque background, all interreflections included (paper §4.2). \param background  0…1
 template <typename Real>
 Real overBackground(const LayerLight<Real>& layer, Real background) {
-    return layer.reflectance + layer.transmittance * background *
-                                   interreflected(layer.transmittance, layer.reflectance, background);
+    return layer.reflectance +
+           layer.transmittance * background * interreflected(layer.transmittance, layer.reflectance, background);
 }
 
 /// A stack of layers: reflectance differs from above and from below, transmittance does not (Kubelka 1954).

@@ -160,8 +160,7 @@ StackOptics::PresentLayers StackOptics::presentLayers(const float* thicknessUm) 
         if (!(d > 0.f)) { // true for NaN too
             continue;
         }
-        const bool goesOn =
-            present.count > 0 && layers_[present.index[present.count - 1]].kind == layers_[k + 1].kind;
+        const bool goesOn = present.count > 0 && layers_[present.index[present.count - 1]].kind == layers_[k + 1].kind;
         const int at = goesOn ? present.count - 1 : present.count++;
         present.index[at] = k + 1;
         present.thicknessUm[at] = std::min(goesOn ? present.thicknessUm[at] + d : d, thickestUm);
@@ -380,9 +379,9 @@ void StackOptics::evaluatePaper(const Spectrum& metal, const PresentLayers& pres
         diffuse[band] = above.reflectanceAbove +
                         above.transmittance * base * interreflected(above.transmittance, above.reflectanceBelow, base);
     }
-    const auto rgbOf = [this](const Spectrum& spectrum) { 
+    const auto rgbOf = [this](const Spectrum& spectrum) {
         return clamped01(V3f(linearFromXyz(xyzFromReflectance(spectrum), features_.colourSpace)));
-     };
+    };
     out.diffuse = rgbOf(diffuse);
     out.lobes[0].colour = out.lobes[0].edgeColour = rgbOf(lobes[0]);
     for (int k = 0; k < present.count; ++k) {

@@ -27,9 +27,9 @@ struct Fraction {
 /// After so many layers the fraction is divided out: each multiplies `under` by 1 … 2e6.
 constexpr int layersPerDivision = 4;
 
-/// R <- reflectance of the layer over a background R (kubelka_munk.h). With e = exp(-kappa d), u = 1 - e² and w = 1 + e²
-/// R0 + T² R / (1 - R0 R) becomes (u (S (1 - R) - K R) + kappa w R) / (u (S (1 - R) + K) + kappa w): a fraction goes in,
-/// a fraction comes out, and nothing below the line cancels. Over and under are divided by kappa.
+/// R <- reflectance of the layer over a background R (kubelka_munk.h). With e = exp(-kappa d), u = 1 - e² and w = 1 +
+/// e² R0 + T² R / (1 - R0 R) becomes (u (S (1 - R) - K R) + kappa w R) / (u (S (1 - R) + K) + kappa w): a fraction goes
+/// in, a fraction comes out, and nothing below the line cancels. Over and under are divided by kappa.
 template <int width>
 PATINA_INLINE void foldLayer(const KernelLayer& layer, Fraction<width>& reflectance) {
     using Bands = BandLanes<width>;
@@ -105,9 +105,8 @@ PATINA_INLINE void foldConservingIn(const KernelInput& input, KernelOutput& outp
     // and is diffuse from then on.
     const Bands difference = reflectance.over - glossy * reflectance.under;
     const Bands scattered = whereGreater(difference, 0.f, difference, Bands::constant(0.f));
-    const Bands diffuse =
-        ((scattered + glossy * reflectance.over * input.k1) * ((1.f - input.k1) * (1.f - input.k2))) /
-        (reflectance.under - reflectance.over * input.k2);
+    const Bands diffuse = ((scattered + glossy * reflectance.over * input.k1) * ((1.f - input.k1) * (1.f - input.k2))) /
+                          (reflectance.under - reflectance.over * input.k2);
     dotBands(diffuse, input.rgbWeights, output.diffuse);
 }
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 
 namespace patina {
@@ -41,34 +42,63 @@ Albedo albedo(const PatinaBsdf& bsdf, double degrees, int samples, Uniforms& uni
     return result;
 }
 
-/// The brightest that was seen, and how many stacks were above 1 beyond the error.
-struct Brightest {
-    double value = 0.0, error = 0.0, degrees = 0.0;
-    int stack = -1, channel = 0;
-    int above = 0;
-
-    /// \return whether a channel is above 1 by more than four standard errors
-    bool add(const Albedo& seen, int number, double atDegrees) {
-        bool over = false;
-        for (int c = 0; c < 3; ++c) {
-            if (seen.mean[c] > value) {
-                value = seen.mean[c];
-                error = seen.error[c];
-                degrees = atDegrees;
-                stack = number;
-                channel = c;
-            }
-            over = over || seen.mean[c] > 1.0 + 4.0 * seen.error[c] + 1e-5; // the last is rounding in single precision
+/// Whether a channel is above 1 by more than four standard errors; the last term is rounding in single precision.
+bool aboveOne(const Albedo& seen) {
+    for (int c = 0; c < 3; ++c) {
+        if (seen.mean[c] > 1.0 + 4.0 * seen.error[c] + 1e-5) {
+            return true;
         }
-        return over;
     }
-};
-
-void tell(const char* what, const Brightest& brightest, int stacks) {
-    std::printf("%s: brightest %.4f +- %.4f, stack %d, channel %d, %g degrees; %d of %d stacks above 1\n", what,
-                brightest.value, brightest.error, brightest.stack, brightest.channel, brightest.degrees,
-                brightest.above, stacks);
+    return false;
 }
+
+double brightestChannel(const V3d& colour) {
+    return std::max({colour.x, colour.y, colour.z});
+}
+
+/// Keeps the looks that seemed brightest. The largest of many noisy means says little: they are measured again with
+/// more light.
+class Brightest {
+  public:
+    void add(const Albedo& seen, const Appearance& look, int number, double degrees) {
+        const double value = brightestChannel(seen.mean);
+        if (kept_.size() == most && value <= kept_.back().value) {
+            return;
+        }
+        kept_.push_back({value, degrees, number, look});
+        std::sort(kept_.begin(), kept_.end(), [](const Entry& a, const Entry& b) { return a.value > b.value; });
+        kept_.resize(std::min(kept_.size(), most));
+    }
+
+    /// Prints and returns the brightest of them.
+    double tell(const char* what, int above, int stacks, Uniforms& uniforms) const {
+        double value = 0.0, error = 0.0, degrees = 0.0;
+        int number = -1;
+        for (const Entry& entry : kept_) {
+            const Albedo again = albedo(PatinaBsdf(entry.look), entry.degrees, 65536, uniforms);
+            for (int c = 0; c < 3; ++c) {
+                if (again.mean[c] > value) {
+                    value = again.mean[c];
+                    error = again.error[c];
+                    degrees = entry.degrees;
+                    number = entry.number;
+                }
+            }
+        }
+        std::printf("%s: brightest %.4f +- %.4f (stack %d at %g degrees); %d of %d stacks above 1\n", what, value,
+                    error, number, degrees, above, stacks);
+        return value;
+    }
+
+  private:
+    struct Entry {
+        double value, degrees;
+        int number;
+        Appearance look;
+    };
+    static constexpr std::size_t most = 24;
+    std::vector<Entry> kept_;
+};
 
 Appearance lookOf(const test::RandomStack& stack, OpticsModel model, bool thinFilm) {
     StackFeatures features;
@@ -79,35 +109,35 @@ Appearance lookOf(const test::RandomStack& stack, OpticsModel model, bool thinFi
 }
 
 // Seen from any direction under a uniformly white sky, no stack may look brighter than the sky. The generator:
-// one of the shipped metals, 1 to 6 of the shipped films, each evenly drawn, 0.01 … 100 µm each, log-uniform; every other
-// stack with interference. The paper's model over the same stacks shows that the test can see a gain.
+// one of the shipped metals, 1 to 6 of the shipped films, each evenly drawn, 0.01 … 100 µm each, log-uniform; every
+// other stack with interference. The paper's model over the same stacks shows that the test can see a gain.
 TEST(Furnace, tenThousandRandomStacksStayDarkerThanTheSky) {
     constexpr int stacks = 10000, samples = 256;
     Uniforms stackUniforms("furnace"), lightUniforms("furnace light");
     Brightest conserving, paper;
+    int paperAbove = 0;
     for (int i = 0; i < stacks; ++i) {
         const test::RandomStack stack = test::randomStack(stackUniforms);
-        const PatinaBsdf bsdf(lookOf(stack, OpticsModel::energyConserving, i % 2 == 1));
-        bool over = false;
+        const Appearance look = lookOf(stack, OpticsModel::energyConserving, i % 2 == 1);
+        const PatinaBsdf bsdf(look);
         for (const double degrees : {0.0, 30.0, 60.0, 75.0, 85.0, 89.0}) {
             const Albedo seen = albedo(bsdf, degrees, samples, lightUniforms);
-            over = conserving.add(seen, i, degrees) || over;
-            for (int c = 0; c < 3; ++c) {
-                ASSERT_LE(seen.mean[c], 1.0 + 4.0 * seen.error[c] + 1e-5) << "stack " << i << " at " << degrees;
-            }
+            ASSERT_FALSE(aboveOne(seen)) << seen.mean << ", stack " << i << " at " << degrees;
+            conserving.add(seen, look, i, degrees);
         }
-        conserving.above += over;
-        const PatinaBsdf printed(lookOf(stack, OpticsModel::paper, i % 2 == 1));
-        over = false;
+        const Appearance printed = lookOf(stack, OpticsModel::paper, i % 2 == 1);
+        const PatinaBsdf asPrinted(printed);
+        bool above = false;
         for (const double degrees : {0.0, 60.0, 85.0}) {
-            over = paper.add(albedo(printed, degrees, samples, lightUniforms), i, degrees) || over;
+            const Albedo seen = albedo(asPrinted, degrees, samples, lightUniforms);
+            above = aboveOne(seen) || above;
+            paper.add(seen, printed, i, degrees);
         }
-        paper.above += over;
+        paperAbove += above;
     }
-    tell("energy conserving", conserving, stacks);
-    tell("paper", paper, stacks);
-    EXPECT_GT(paper.value, 1.3);
-    EXPECT_GT(paper.above, stacks / 50);
+    EXPECT_LE(conserving.tell("energy conserving", 0, stacks, lightUniforms), 1.0);
+    EXPECT_GT(paper.tell("paper", paperAbove, stacks, lightUniforms), 1.3);
+    EXPECT_GT(paperAbove, stacks / 50);
 }
 
 // The worst that can be asked: a perfect mirror and perfect whites under every kind of interface.
@@ -134,10 +164,11 @@ TEST(Furnace, perfectlyWhiteStacksStayDarkerThanTheSky) {
         const PatinaBsdf bsdf(out);
         for (const double degrees : {0.0, 30.0, 60.0, 75.0, 85.0, 89.0}) {
             const Albedo seen = albedo(bsdf, degrees, 4096, uniforms);
-            EXPECT_FALSE(brightest.add(seen, i, degrees)) << seen.mean << " stack " << i << " at " << degrees;
+            EXPECT_FALSE(aboveOne(seen)) << seen.mean << ", stack " << i << " at " << degrees;
+            brightest.add(seen, out, i, degrees);
         }
     }
-    tell("white", brightest, stacks);
+    EXPECT_LE(brightest.tell("white", 0, stacks, uniforms), 1.001); // four errors of 65,536 samples
 }
 
 // A million samples each. Significance 0.01 over all of them together (Šidák's correction).

@@ -19,8 +19,8 @@ inline Imath::V3f threeUniforms(Uniforms& uniforms) {
     return {std::min(x, 0.99999994f), std::min(y, 0.99999994f), std::min(z, 0.99999994f)};
 }
 
-/// Upper tail of the chi² distribution, Q(k / 2, x / 2): the series of the lower tail below x = k + 2, Lentz's continued
-/// fraction above (Numerical Recipes §6.2).
+/// Upper tail of the chi² distribution, Q(k / 2, x / 2): the series of the lower tail below x = k + 2, Lentz's
+/// continued fraction above (Numerical Recipes §6.2).
 inline double chiSquareTail(double chi2, int freedom) {
     const double a = 0.5 * freedom, x = 0.5 * chi2;
     if (!(x > 0.0)) {

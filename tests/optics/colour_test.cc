@@ -34,8 +34,8 @@ TEST(Colour, primariesAreThoseOfRec709) {
     EXPECT_NEAR((back - V3d(0.2, 0.7, 0.05)).length(), 0.0, 1e-12);
 }
 
-// AP1's primaries (S-2014-004) are the corners of ACEScg; seen under D65 they are Bradford's image of them. Adapting back
-// by the same cone responses must give the published chromaticities.
+// AP1's primaries (S-2014-004) are the corners of ACEScg; seen under D65 they are Bradford's image of them. Adapting
+// back by the same cone responses must give the published chromaticities.
 TEST(Colour, primariesOfAcescgAreThoseOfAp1) {
     const double chromaticities[3][2] = {{0.713, 0.293}, {0.165, 0.830}, {0.128, 0.044}};
     const double bradford[3][3] = {{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}};

@@ -1,5 +1,5 @@
-// The whole default look (Kubelka–Munk, interfaces, lobes, air, interference) against docs/optics.md, section 3, worked out
-// a second time: every 5 nm, in double precision, with other formulas where there are any.
+// The whole default look (Kubelka–Munk, interfaces, lobes, air, interference) against docs/optics.md, section 3, worked
+// out a second time: every 5 nm, in double precision, with other formulas where there are any.
 
 #include "optics/fresnel.h"
 #include "optics/thin_film.h"
@@ -40,9 +40,8 @@ V3d referenceOver(const FineSpectrum& base, const std::vector<Layer>& layers) {
     std::vector<double> above(layers.size(), 0.0);
     for (std::size_t k = 0; k < layers.size(); ++k) {
         if (k + 1 < layers.size()) {
-            above[k] =
-                layers[k].weight() * layers[k + 1].weight() *
-                interfaceBetween(layers[k].material->refractiveIndex, layers[k + 1].material->refractiveIndex);
+            above[k] = layers[k].weight() * layers[k + 1].weight() *
+                       interfaceBetween(layers[k].material->refractiveIndex, layers[k + 1].material->refractiveIndex);
         }
         index += layers[k].weight() * (layers[k].material->refractiveIndex - index);
     }
@@ -128,8 +127,7 @@ double worstDifference(const char* purpose, int count, bool thinFilm, bool thinF
             stack.thicknessUm[0] = static_cast<float>(uniforms.between(0.002, 0.15));
         }
         Appearance look;
-        StackOptics(stack.materials, OpticsModel::energyConserving, features)
-            .evaluate(stack.thicknessUm.data(), look);
+        StackOptics(stack.materials, OpticsModel::energyConserving, features).evaluate(stack.thicknessUm.data(), look);
         const V3d fine = labFromXyz(xyzFromLinearRec709(reference(stack, thinFilm)));
         worst = std::max(worst, deltaE2000(test::labOf(test::total(look)), fine));
     }

@@ -120,9 +120,9 @@ TEST(KubelkaMunk, neverGivesNaNAndNeverGainsInAMillionSinglePrecisionStacks) {
             }
             ASSERT_LE(merged.reflectanceAbove + merged.transmittance, 1.f + 2e-5f);
         }
-        const float over = merged.reflectanceAbove +
-                           merged.transmittance * base *
-                               interreflected(merged.transmittance, merged.reflectanceBelow, base);
+        const float over =
+            merged.reflectanceAbove +
+            merged.transmittance * base * interreflected(merged.transmittance, merged.reflectanceBelow, base);
         ASSERT_NEAR(over, folded, 1e-4f);
     }
 }
@@ -167,8 +167,8 @@ TEST(KubelkaMunk, invertsAnOpaqueAndAThinSample) {
     const auto found = fromOpaqueAndThin(infiniteReflectance(0.3, 0.9), layer.reflectance);
     EXPECT_NEAR(found.absorption, 0.3 * 1.7, 1e-10);
     EXPECT_NEAR(found.scattering, 0.9 * 1.7, 1e-10);
-    const auto single = fromOpaqueAndThin(static_cast<float>(infiniteReflectance(0.3, 0.9)),
-                                          static_cast<float>(layer.reflectance));
+    const auto single =
+        fromOpaqueAndThin(static_cast<float>(infiniteReflectance(0.3, 0.9)), static_cast<float>(layer.reflectance));
     EXPECT_NEAR(single.absorption, 0.3 * 1.7, 1e-4);
     EXPECT_NEAR(single.scattering, 0.9 * 1.7, 1e-4);
 }
@@ -218,8 +218,8 @@ TEST(KubelkaMunk, stackingIsAssociativeAndEqualsTheFoldFromTheBaseUp) {
     }
 }
 
-// A strong scatterer over an absorber: 0.58124746920. Composing front to back with one reflectance for both sides, as the
-// paper's text reads, gives 0.58204596752.
+// A strong scatterer over an absorber: 0.58124746920. Composing front to back with one reflectance for both sides, as
+// the paper's text reads, gives 0.58204596752.
 TEST(KubelkaMunk, keepsFrontAndBackReflectanceApart) {
     const double d[3] = {1.0, 0.4, 0.7};
     const auto a = kubelkaMunkLayer(0.2, 2.0, d[0]);

@@ -112,7 +112,8 @@ TEST(MaterialLibrary, mixturesFollowDuncansRule) {
 TEST(MaterialLibrary, aMixtureHasTheMeanDensityOfItsParts) {
     const auto& library = shippedMaterials();
     EXPECT_NEAR(library.at("tarnish_1").densityKgPerM3,
-                0.85f * library.at("cuprite").densityKgPerM3 + 0.15f * library.at("copper_sulphide").densityKgPerM3, 1.f);
+                0.85f * library.at("cuprite").densityKgPerM3 + 0.15f * library.at("copper_sulphide").densityKgPerM3,
+                1.f);
     for (const std::string& name : library.names()) {
         EXPECT_GT(library.at(name).densityKgPerM3, 0.f) << name;
     }
@@ -218,7 +219,8 @@ TEST_F(BrokenMaterials, spectrumOutOfOrderInItsFile) {
 }
 
 TEST_F(BrokenMaterials, aPlaceInAFileIsThatOfTheNumberAtFault) {
-    const char* const toml = "source = \"test\"\n[reflectance]\nfile = \"spectra/it.csv\"\n[scattering]\nhides_at_um = 3\n";
+    const char* const toml =
+        "source = \"test\"\n[reflectance]\nfile = \"spectra/it.csv\"\n[scattering]\nhides_at_um = 3\n";
     write("materials/green.toml", toml);
     const std::string head = "# measured\nreflectance, wavelength_nm\n";
     write("spectra/it.csv", head + "0.1, 400\n0.1, 500\n0.2, 450\n0.2, 700\n");

@@ -110,8 +110,8 @@ TEST(PatinaColours, coatingsOfThePapersScriptsReadBrownThenGreen) {
 
 /// What weathered copper roofs were measured to look like: L*a*b* (2 degrees, D65) computed from samples 0692UUUCOP and
 /// 0682UUUCOP. Reproduced from the ASTER Spectral Library through the courtesy of the Jet Propulsion Laboratory,
-/// California Institute of Technology, Pasadena, California. Copyright (c) 1999, California Institute of Technology. ALL
-/// RIGHTS RESERVED. (Baldridge, Hook, Grove & Rivera 2009, Remote Sens. Environ. 113:711-715.)
+/// California Institute of Technology, Pasadena, California. Copyright (c) 1999, California Institute of Technology.
+/// ALL RIGHTS RESERVED. (Baldridge, Hook, Grove & Rivera 2009, Remote Sens. Environ. 113:711-715.)
 const V3d tenYearRoof(51.3, 18.7, 32.5), oldRoof(67.9, -11.8, 6.4);
 
 /// An environment as data/weather/copper_*.toml has it.
@@ -134,8 +134,8 @@ double metalLostUm(double firstYearUm, double years) {
 }
 const double c2UmPerYear = std::sqrt(0.1 * 0.6), c3UmPerYear = std::sqrt(0.6 * 1.3);
 
-/// The stack of docs/optics.md, section 5: four times the metal as mineral, half of it washed away; the oxides have theirs
-/// first, the two mineral layers share the rest evenly.
+/// The stack of docs/optics.md, section 5: four times the metal as mineral, half of it washed away; the oxides have
+/// theirs first, the two mineral layers share the rest evenly.
 V3d roofLab(const Environment& environment, double firstYearUm, double years) {
     const double whole = 0.5 * 4.0 * metalLostUm(firstYearUm, years);
     const double tarnish = environment.tarnishUm * (1.0 - std::exp(-years / environment.tarnishYears));
@@ -155,8 +155,8 @@ TEST(PatinaColours, aThirtyYearOldPatinaLooksLikeTheMeasuredRoof) {
     EXPECT_LE(deltaE2000(roofLab(environments[1], c2UmPerYear, 30.0), oldRoof), 8.0); // the country is C2
 }
 
-// What holds of the other roof, ten years old and still brown: it is copper under cuprite of a fifteenth to a tenth of a
-// micrometre. So little comes only of the driest air: cuprite is 1.68 times the metal, so that film is 0.04 … 0.06 µm
+// What holds of the other roof, ten years old and still brown: it is copper under cuprite of a fifteenth to a tenth of
+// a micrometre. So little comes only of the driest air: cuprite is 1.68 times the metal, so that film is 0.04 … 0.06 µm
 // of copper in ten years and r = 0.008 … 0.014 µm a year, inside C1 (up to 0.1).
 TEST(PatinaColours, theTenYearOldRoofIsAThinFilmOfCuprite) {
     double best = 1e9;
@@ -175,8 +175,8 @@ TEST(PatinaColours, theTenYearOldRoofIsAThinFilmOfCuprite) {
 }
 
 // What does not hold: the kinetics of an ordinary place, C2 and above, make ten years more than half a micrometre of
-// oxide and some green, darker or greener than that roof by far. This asserts the failure, so that whoever mends it finds
-// the sentence in docs/optics.md that says so.
+// oxide and some green, darker or greener than that roof by far. This asserts the failure, so that whoever mends it
+// finds the sentence in docs/optics.md that says so.
 TEST(PatinaColours, tenYearsOfOrdinaryKineticsAreNotThatRoof) {
     for (const Environment& environment : environments) {
         for (const double rate : {c2UmPerYear, c3UmPerYear}) {

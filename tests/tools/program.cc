@@ -36,7 +36,9 @@ std::vector<std::string> environment() {
     for (char** variable = environ; *variable; ++variable)
         if (std::string(*variable).rfind("VDB_PATINA_DATA=", 0) != 0)
             variables.emplace_back(*variable);
-    variables.emplace_back("VDB_PATINA_DATA=" PATINA_SOURCE_DIR "/data");
+    // A test that needs data of its own says where they are in PATINA_TEST_DATA.
+    const char* own = std::getenv("PATINA_TEST_DATA");
+    variables.emplace_back(std::string("VDB_PATINA_DATA=") + (own ? own : PATINA_SOURCE_DIR "/data"));
     return variables;
 }
 

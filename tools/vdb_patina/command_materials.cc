@@ -48,6 +48,12 @@ void detail(const MaterialLibrary& library, const std::string& name, Console& co
                         lab.x, lab.y, lab.z);
     text += fmt::format("  roughness {:.3g}, refractive index {:.3g}, hardness {:.3g}, solid fraction {:.3g}\n",
                         m->roughness, m->refractiveIndex, m->hardness, m->density);
+    text += fmt::format("  specular colour {:.3f} {:.3f} {:.3f} (linear, normal incidence), density {}\n",
+                        m->specularColour.x, m->specularColour.y, m->specularColour.z,
+                        m->densityKgPerM3 > 0.f ? fmt::format("{:.0f} kg/m³ of the solid", m->densityKgPerM3)
+                                                : std::string("not known"));
+    if (m->isEstimate)
+        text += "  some of these are estimates: the source below says which\n";
     text += m->isMetal ? "  wavelength/nm  R(normal incidence)\n" : "  wavelength/nm  R_inf      K/(1/µm)   S/(1/µm)\n";
     for (int i = 0; i < bandCount; ++i) {
         text += fmt::format("  {:>12.0f}  {:8.4f}", bandWavelengthNm(i), m->reflectance[i]);

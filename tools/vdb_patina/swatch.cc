@@ -146,11 +146,12 @@ Swatch makeSwatch(const MaterialLibrary& library, const std::string& name, const
                               return seen(look);
                           }});
     } else {
-        const ColourOf alone = overStack(onCopper, 0.0);
+        const ColourOf alone = overStack(onCopper, 0.0), other = overStack(onLayer, underUm);
         swatch.opaqueUm = opaqueFrom(alone);
-        strips.push_back({"over copper", swatch.opaqueUm, alone});
-        strips.push_back(
-            {fmt::format("over {:g} µm of {} on copper", underUm, over), swatch.opaqueUm, overStack(onLayer, underUm)});
+        // One scale for both, to where both are opaque: it takes more to hide the darker ground.
+        const double mostUm = std::max(swatch.opaqueUm, opaqueFrom(other));
+        strips.push_back({"over copper", mostUm, alone});
+        strips.push_back({fmt::format("over {:g} µm of {} on copper", underUm, over), mostUm, other});
         if (material.hasIndex)
             strips.push_back(
                 {"over copper, its first weeks: interference", thickestInterferingUm, overStack(interfering, 0.0)});
