@@ -24,12 +24,13 @@ class BakeTest : public testing::Test {
     StackOptics optics() const {
         return StackOptics({&library_.at("copper"), &library_.at("cuprite_2"), &library_.at("marine_patina_3")});
     }
-    MapSet bakeAt(int resolution) const {
+    MapSet bakeAt(int resolution) const { return bakeAt(resolution, optics()); }
+    MapSet bakeAt(int resolution, const StackOptics& optics) const {
         BakeOptions options;
         options.resolution = resolution;
         options.materialId = true;
         Progress progress;
-        return bake(*piece_->volume, piece_->surface, optics(), options, progress);
+        return bake(*piece_->volume, piece_->surface, optics, options, progress);
     }
 
     std::unique_ptr<test::Piece> piece_;
@@ -79,6 +80,31 @@ TEST_F(BakeTest, ColoursAreThoseOfTheStack) {
     const auto& diffuse = maps.find("diffuse")->halves;
     for (int c = 0; c < 3; ++c)
         EXPECT_NEAR(float(diffuse[(32 * 64 + 48) * 3 + c]), look.diffuse[c], 0.003f);
+}
+
+// ACEScg maps are the Rec.709 ones, converted: white stays white, and no colour of this sheet leaves Rec.709.
+TEST_F(BakeTest, AcescgIsRec709Converted) {
+    const MapSet rec709 = bakeAt(32), acescg = bakeAt(32, optics().in(ColourSpace::acescg));
+    int compared = 0;
+    double farthest = 0.0;
+    for (const char* name : {"diffuse", "base_color"}) {
+        const auto &from = rec709.find(name)->halves, &to = acescg.find(name)->halves;
+        EXPECT_EQ(acescg.find(name)->colourSpace, ColourSpace::acescg);
+        ASSERT_EQ(from.size(), to.size());
+        for (std::size_t i = 0; i + 2 < from.size(); i += 3) {
+            const Imath::V3d rgb(from[i], from[i + 1], from[i + 2]);
+            if (rgb.x <= 0.0 || rgb.y <= 0.0 || rgb.z <= 0.0)
+                continue; // beside the sheet, or at the edge of the gamut
+            const Imath::V3d expected = acescgFromXyz(xyzFromLinearRec709(rgb));
+            for (int c = 0; c < 3; ++c) {
+                EXPECT_NEAR(float(to[i + c]), expected[c], 1e-3) << name << " " << i; // half floats
+                farthest = std::max(farthest, std::abs(expected[c] - rgb[c]));
+            }
+            ++compared;
+        }
+    }
+    EXPECT_GT(compared, 1000);
+    EXPECT_GT(farthest, 0.01); // or a bake that ignores the space would pass
 }
 
 TEST_F(BakeTest, TheNormalIsFlatAwayFromTheStep) {
