@@ -1,150 +1,264 @@
 #include "export/bake.h"
 
-#include "export/outer_surface.h"
+#include "export/bake_rows.h"
 #include "export/texel_map.h"
-#include "operators/fields/field_grid.h"
+#include "export/texel_sampler.h"
 #include "optics/colour.h"
-#include "volume/nest_grids.h"
-#include "volume/stack_probe.h"
+#include "surface/surface_walk.h"
+#include "surface/uv_frame.h"
 
-#include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
+#include <cstring>
+#include <memory>
 
 namespace patina {
 
+using Imath::V2i;
+using Imath::V3d;
+using Imath::V3f;
+
 namespace {
 
-// The maps while they are being baked, in the order of the files.
-struct Planes {
-    MapImage displacement, diffuse, baseColour, metallic, roughness, normal, materialId, foldMask, vectors;
-    std::vector<MapImage> lobes, thickness, coverage, fields;
-};
-
-MapImage plane(const std::string& name, int size, int channels, bool isColour, bool isFloat) {
-    MapImage map;
-    map.name = name;
-    map.size = size;
-    map.channels = channels;
-    map.isColour = isColour;
-    const std::size_t count = static_cast<std::size_t>(size) * size * channels;
-    if (isFloat)
-        map.floats.assign(count, 0.f);
-    else
-        map.halves.assign(count, Imath::half(0.f));
-    return map;
-}
-
-void put(MapImage& map, std::size_t texel, float value) {
-    if (map.halves.empty())
-        map.floats[texel] = value;
-    else
-        map.halves[texel] = Imath::half(value);
-}
-
-void put(MapImage& map, std::size_t texel, const Imath::V3f& colour) {
-    for (int c = 0; c < 3; ++c)
-        put(map, texel * 3 + c, colour[c]);
-}
-
-Planes makePlanes(const LayerVolume& volume, const BakeOptions& options) {
-    const int size = options.resolution;
-    Planes planes;
-    planes.displacement = plane("displacement", size, 1, false, true);
-    planes.diffuse = plane("diffuse", size, 3, true, false);
-    planes.baseColour = plane("base_color", size, 3, true, false);
-    planes.metallic = plane("metallic", size, 1, false, false);
-    planes.roughness = plane("roughness", size, 1, false, false);
-    planes.normal = plane("normal", size, 3, false, false);
-    planes.lobes.push_back(plane(fmt::format("lobe_00_{}", volume.metal()), size, 3, true, false));
-    for (int k = 1; k <= volume.layerCount(); ++k) {
-        const std::string layer = fmt::format("{:02d}_{}", k, volume.layers()[k - 1]);
-        planes.lobes.push_back(plane("lobe_" + layer, size, 3, true, false));
-        planes.thickness.push_back(plane("thickness_" + layer, size, 1, false, true));
-        planes.coverage.push_back(plane("coverage_" + layer, size, 1, false, false));
-    }
-    if (options.materialId)
-        planes.materialId = plane("material_id", size, 1, false, true);
-    if (options.foldMask)
-        planes.foldMask = plane("fold_mask", size, 1, false, false);
-    if (options.vectorDisplacement)
-        planes.vectors = plane("vector_displacement", size, 3, false, true);
-    if (options.fields)
-        for (const auto& field : volume.grids().fields)
-            planes.fields.push_back(plane("field_" + field.first, size, 1, false, false));
-    return planes;
-}
-
-// The tangent-space normal of the displaced surface, from the differences of the heights of neighbouring texels:
-// along u the surface rises by dh/du over a length |dP/du|, and so for v.
-void bakeNormals(const SurfaceMesh& surface, const TexelMap& texels, Planes& planes) {
-    const int size = texels.size;
-    const std::vector<float>& height = planes.displacement.floats;
-    tbb::parallel_for(0, size, [&](int y) {
-        for (int x = 0; x < size; ++x) {
-            const std::size_t at = static_cast<std::size_t>(y) * size + x;
-            const int triangle = texels.points[at].triangle;
-            if (triangle < 0)
-                continue;
-            const Imath::V3i& uvCorner = surface.triangleUvs[triangle];
-            const Imath::V3i& corner = surface.triangles[triangle];
-            const Imath::V2d e1(surface.uvs[uvCorner[1]] - surface.uvs[uvCorner[0]]);
-            const Imath::V2d e2(surface.uvs[uvCorner[2]] - surface.uvs[uvCorner[0]]);
-            const Imath::V3d p1(surface.positions[corner[1]] - surface.positions[corner[0]]);
-            const Imath::V3d p2(surface.positions[corner[2]] - surface.positions[corner[0]]);
-            const double determinant = e1.x * e2.y - e1.y * e2.x;
-            Imath::V3d normal(0.0, 0.0, 1.0);
-            if (determinant != 0.0) {
-                const Imath::V3d du = (p1 * e2.y - p2 * e1.y) / determinant;
-                const Imath::V3d dv = (p2 * e1.x - p1 * e2.x) / determinant;
-                const auto slope = [&](int dx, int dy, double length) {
-                    const auto inChart = [&](int nx, int ny) {
-                        return nx >= 0 && ny >= 0 && nx < size && ny < size &&
-                               texels.points[static_cast<std::size_t>(ny) * size + nx].triangle >= 0;
-                    };
-                    const bool ahead = inChart(x + dx, y + dy), behind = inChart(x - dx, y - dy);
-                    const double after = ahead ? height[at + dx + static_cast<std::ptrdiff_t>(dy) * size] : height[at];
-                    const double before =
-                        behind ? height[at - dx - static_cast<std::ptrdiff_t>(dy) * size] : height[at];
-                    const double steps = (ahead ? 1.0 : 0.0) + (behind ? 1.0 : 0.0);
-                    return steps > 0.0 && length > 0.0 ? (after - before) * size / (steps * length) : 0.0;
-                };
-                // Rows run against v.
-                normal = Imath::V3d(-slope(1, 0, du.length()), slope(0, 1, dv.length()), 1.0).normalized();
-            }
-            put(planes.normal, at, Imath::V3f(normal * 0.5 + Imath::V3d(0.5)));
-        }
-    });
-}
-
-// From the base to the surface above. Layers thinner than half a voxel go straight up.
-Imath::V3d vectorOf(const OuterSurface& outer, const StackProbe::Reading& reading, const Imath::V3d& position,
-                    const Imath::V3d& normal, double voxelSize) {
-    if (!reading.found || reading.projected || reading.height < 0.5 * voxelSize)
-        return normal * reading.height;
-    const Imath::V3d base = position + normal * reading.baseOffset;
-    const auto end = outer.above(base);
-    return end ? *end - base : normal * reading.height;
-}
-
-void fillGutter(const TexelMap& texels, MapImage& map) {
-    for (const auto& [to, from] : texels.gutter)
-        for (int c = 0; c < map.channels; ++c) {
-            if (map.halves.empty())
-                map.floats[std::size_t(to) * map.channels + c] = map.floats[std::size_t(from) * map.channels + c];
-            else
-                map.halves[std::size_t(to) * map.channels + c] = map.halves[std::size_t(from) * map.channels + c];
-        }
-}
+// A multiple of the 16 rows that EXR's ZIP packs together, and as many as the widest gutter.
+constexpr int bandRows = 32;
+// From the band whose texels are read to the one that is written: refined, normals, gutter; and one behind it, which
+// gutters still copy from.
+constexpr int bandsHeld = 5;
 
 // Per row, then over the rows in order: the sums do not depend on the threads.
 struct RowSums {
-    std::size_t covered = 0, unreadable = 0, green = 0, foldsAsked = 0, folds = 0;
+    std::size_t covered = 0, supersampled = 0, green = 0;
+    double points = 0.0, unreadable = 0.0, foldsAsked = 0.0, folds = 0.0;
     float maxDisplacement = 0.f;
-    Imath::V3d colour{0.0};
+    V3d colour{0.0};
+};
+
+/// One tile, band by band. A band goes through four stages, each of which needs the one before to be done in the bands
+/// beside it.
+class TileBake {
+  public:
+    TileBake(const SurfaceWalk& walk, const TexelSampler& sampler, const TangentFrames& frames,
+             const BakeOptions& options, const std::vector<std::uint8_t>& pointsAcross, ColourSpace space,
+             double heightUnits, TexelMap texels, BakeRows& rows)
+        : surface_(walk.surface()), sampler_(sampler), frames_(frames), options_(options), across_(pointsAcross),
+          space_(space), heightUnits_(heightUnits), texels_(std::move(texels)), rows_(rows), sums_(options.resolution),
+          supersampled_(static_cast<std::size_t>(options.resolution) * rows.rows()) {}
+
+    void run(MapSink& sink, Progress& progress, double done, double share) {
+        const int size = texels_.size, bands = (size + bandRows - 1) / bandRows;
+        const int maps = static_cast<int>(rows_.maps().size());
+        for (int band = 0; band < bands + 3; ++band) {
+            progress.checkpoint();
+            eachRow(band, bands, [&](int y) { readRow(y); });
+            eachRow(band - 1, bands, [&](int y) { refineRow(y); });
+            eachRow(band - 2, bands, [&](int y) { normalRow(y); });
+            eachRow(band - 3, bands, [&](int y) { gutterRow(y); });
+            if (const int first = (band - 3) * bandRows; first >= 0)
+                tbb::parallel_for(0, maps, [&](int m) {
+                    sink.write(m, rows_.row(m, first), std::min(bandRows, size - first));
+                }, tbb::simple_partitioner());
+            progress.update(done + share * (band + 1) / (bands + 3));
+        }
+    }
+
+    const TexelMap& texels() const { return texels_; }
+    const std::vector<RowSums>& sums() const { return sums_; }
+
+  private:
+    struct Work {
+        TexelSampler::Scratch scratch;
+        TexelValues values;
+    };
+
+    template <typename Row> void eachRow(int band, int bands, const Row& row) {
+        if (band >= 0 && band < bands)
+            tbb::parallel_for(band * bandRows, std::min(texels_.size, (band + 1) * bandRows), row);
+    }
+    const SurfacePoint& pointOf(int y, int x) const {
+        return texels_.points[static_cast<std::size_t>(y) * texels_.size + x];
+    }
+    template <typename List, typename Key> static auto firstFrom(const List& list, std::size_t texel, const Key& key) {
+        return std::lower_bound(list.begin(), list.end(), texel,
+                                [&](const auto& item, std::size_t value) { return key(item) < value; });
+    }
+    template <typename Use> void eachRimTexel(int y, const Use& use) const {
+        const std::size_t start = static_cast<std::size_t>(y) * texels_.size;
+        for (auto rim = firstFrom(texels_.rim, start, [](const RimTexel& r) { return r.texel; });
+             rim != texels_.rim.end() && rim->texel < start + texels_.size; ++rim)
+            use(static_cast<int>(rim->texel - start), *rim);
+    }
+
+    void readRow(int y) {
+        Work& work = work_.local();
+        rows_.clearRow(y);
+        const std::size_t ring = static_cast<std::size_t>(y % rows_.rows()) * texels_.size;
+        std::fill_n(supersampled_.begin() + ring, texels_.size, std::uint8_t(0));
+        RowSums& sums = sums_[y];
+        for (int x = 0; x < texels_.size; ++x) {
+            const SurfacePoint& point = pointOf(y, x);
+            if (point.triangle < 0)
+                continue;
+            const int across = across_[point.triangle];
+            supersampled_[ring + x] = across > 1;
+            // Without the mask one texel of sixteen tells the fraction.
+            const bool askFolds = options_.foldMask || (x % 4 == 0 && y % 4 == 0);
+            sampler_.read(point, across, askFolds, work.scratch, work.values);
+            rows_.put(y, x, work.values);
+            count(work.values, sums);
+        }
+        eachRimTexel(y, [&](int x, const RimTexel& rim) {
+            sampler_.read(rim.shown, across_[rim.shown.triangle], options_.foldMask, work.scratch, work.values);
+            rows_.put(y, x, work.values);
+        });
+    }
+
+    void count(const TexelValues& values, RowSums& sums) const {
+        ++sums.covered;
+        sums.points += values.points;
+        sums.unreadable += values.unreadable;
+        sums.foldsAsked += values.foldsAsked;
+        sums.folds += values.folds;
+        const V3d xyz = xyzFromLinear(values.baseColour, space_);
+        sums.colour += linearRec709FromXyz(xyz);
+        sums.green += labFromXyz(xyz).y < -4.0;
+    }
+
+    // Texels read at one point whose neighbours show another layer are read again at four.
+    void refineRow(int y) {
+        Work& work = work_.local();
+        const std::size_t ring = static_cast<std::size_t>(y % rows_.rows()) * texels_.size;
+        const int size = texels_.size;
+        for (int x = 0; x < size; ++x) {
+            const SurfacePoint& point = pointOf(y, x);
+            if (point.triangle < 0)
+                continue;
+            if (supersampled_[ring + x]) {
+                ++sums_[y].supersampled;
+                continue;
+            }
+            bool differs = false;
+            const std::uint8_t own = rows_.visible(y, x);
+            for (int ny = std::max(0, y - 1); ny <= std::min(size - 1, y + 1) && !differs; ++ny)
+                for (int nx = std::max(0, x - 1); nx <= std::min(size - 1, x + 1); ++nx)
+                    differs = differs || (rows_.isSet(ny, nx) && rows_.visible(ny, nx) != own);
+            if (!differs)
+                continue;
+            ++sums_[y].supersampled;
+            sampler_.read(point, 2, options_.foldMask, work.scratch, work.values);
+            rows_.replace(y, x, work.values);
+        }
+    }
+
+    // The normal of the displaced surface P + h N, from its derivatives by u and v, in the frame of the tangents.
+    void normalAtTexel(int y, int x, const SurfacePoint& shown, const SurfacePoint& owner) {
+        const UvDerivatives uv = uvDerivativesOf(surface_, owner.triangle);
+        V3d encoded(0.5, 0.5, 1.0);
+        if (uv.valid) {
+            const V3d normal = normalAt(surface_, shown);
+            const double height = rows_.height(y, x) / heightUnits_;
+            // The facets' own slope is no relief: the derivatives of the surface that the smooth normals stand for.
+            const auto derivative = [&](const V3d& along, const V3d& normalChange, double slope) {
+                const V3d flat = along - normal * along.dot(normal);
+                const V3d turned = normalChange - normal * normalChange.dot(normal);
+                return flat + turned * height + normal * (slope / heightUnits_);
+            };
+            // Rows run against v.
+            const V3d du = derivative(uv.du, uv.normalDu, slopeAlong(y, x, 0, 1));
+            const V3d dv = derivative(uv.dv, uv.normalDv, -slopeAlong(y, x, 1, 0));
+            V3d displaced = du.cross(dv);
+            if (uv.mirrored)
+                displaced = -displaced;
+            const double length = displaced.length();
+            if (length > 0.0 && displaced.dot(normal) > 0.0) {
+                displaced /= length;
+                const TangentFrames::Frame frame = frames_.at(owner, normal);
+                encoded = V3d(displaced.dot(frame.tangent), displaced.dot(frame.bitangent), displaced.dot(normal)) * 0.5 +
+                          V3d(0.5);
+            }
+        }
+        rows_.putNormal(y, x, V3f(encoded));
+    }
+
+    // How the height changes over the width of the tile along a row or a column.
+    double slopeAlong(int y, int x, int dy, int dx) const {
+        const auto isSet = [&](int ny, int nx) {
+            return ny >= 0 && nx >= 0 && ny < texels_.size && nx < texels_.size && rows_.isSet(ny, nx);
+        };
+        const bool ahead = isSet(y + dy, x + dx), behind = isSet(y - dy, x - dx);
+        const double after = rows_.height(ahead ? y + dy : y, ahead ? x + dx : x);
+        const double before = rows_.height(behind ? y - dy : y, behind ? x - dx : x);
+        return ahead || behind ? (after - before) * texels_.size / (int(ahead) + int(behind)) : 0.0;
+    }
+
+    void normalRow(int y) {
+        for (int x = 0; x < texels_.size; ++x)
+            if (const SurfacePoint& point = pointOf(y, x); point.triangle >= 0) {
+                normalAtTexel(y, x, point, point);
+                sums_[y].maxDisplacement = std::max(sums_[y].maxDisplacement, std::abs(rows_.height(y, x)));
+            }
+        eachRimTexel(y, [&](int x, const RimTexel& rim) { normalAtTexel(y, x, rim.shown, rim.border); });
+    }
+
+    void gutterRow(int y) {
+        const std::size_t start = static_cast<std::size_t>(y) * texels_.size;
+        for (auto copy = firstFrom(texels_.gutter, start, [](const auto& pair) { return pair.first; });
+             copy != texels_.gutter.end() && copy->first < start + texels_.size; ++copy)
+            rows_.copyTexel(y, static_cast<int>(copy->first - start), static_cast<int>(copy->second / texels_.size),
+                            static_cast<int>(copy->second % texels_.size));
+    }
+
+    const SurfaceMesh& surface_;
+    const TexelSampler& sampler_;
+    const TangentFrames& frames_;
+    const BakeOptions& options_;
+    const std::vector<std::uint8_t>& across_;
+    ColourSpace space_;
+    double heightUnits_; // of the maps' heights per scene unit of the volume
+    TexelMap texels_;
+    BakeRows& rows_;
+    std::vector<RowSums> sums_;
+    std::vector<std::uint8_t> supersampled_;
+    tbb::enumerable_thread_specific<Work> work_;
+};
+
+// Keeps what it is given.
+class MemorySink : public MapSink {
+  public:
+    std::vector<MapImage> maps;
+
+    void begin(const std::vector<MapInfo>& infos) override {
+        first_ = maps.size();
+        filled_.assign(infos.size(), 0);
+        for (const MapInfo& info : infos) {
+            MapImage& map = maps.emplace_back();
+            static_cast<MapInfo&>(map) = info;
+            const std::size_t values = static_cast<std::size_t>(info.size) * info.size * info.channels;
+            info.isHalf ? map.halves.resize(values) : map.floats.resize(values);
+        }
+    }
+    void write(int m, const void* rows, int count) override {
+        MapImage& map = maps[first_ + m];
+        const std::size_t rowBytes = map.pixelBytes() * map.size;
+        char* pixels = map.isHalf ? reinterpret_cast<char*>(map.halves.data()) : reinterpret_cast<char*>(map.floats.data());
+        std::memcpy(pixels + rowBytes * filled_[m], rows, rowBytes * count);
+        filled_[m] += count;
+    }
+    void end() override {}
+    void finish(const std::vector<std::vector<std::pair<std::string, float>>>& numbers) override {
+        for (std::size_t i = 0; i < maps.size(); ++i)
+            for (const auto& [name, value] : numbers[i % numbers.size()])
+                for (auto& [known, number] : maps[i].numbers)
+                    if (known == name)
+                        number = value;
+    }
+
+  private:
+    std::size_t first_ = 0;
+    std::vector<int> filled_;
 };
 
 } // namespace
@@ -156,152 +270,76 @@ const MapImage* MapSet::find(const std::string& name) const {
     return nullptr;
 }
 
-MapSet bake(const LayerVolume& volume, const SurfaceMesh& surface, const StackOptics& optics,
-            const BakeOptions& options, Progress& progress) {
-    const TexelMap texels = makeTexelMap(surface, options.resolution, options.gutter);
-    progress.checkpoint();
-    const StackProbe probe(volume);
-    const int size = options.resolution;
-    const int layers = volume.layerCount();
-    const ColourSpace space = optics.features().colourSpace;
-    const double displacementScale = options.keepExaggeration ? 1.0 : 1.0 / volume.scale().exaggeration;
-    std::vector<float> ids{1.f};
-    for (const std::string& layer : volume.layers())
-        ids.push_back(static_cast<float>(volume.findMaterialId(layer)));
-
-    const OuterSurface outer(volume);
-    std::vector<ThicknessMapPtr> fields;
-    if (options.fields)
-        for (const auto& field : volume.grids().fields)
-            fields.push_back(makeFieldMap(volume, field.first));
-
-    Planes planes = makePlanes(volume, options);
-    std::vector<RowSums> rows(size);
-    tbb::parallel_for(0, size, [&](int y) {
-        if (progress.cancelled())
-            return;
-        std::vector<double> thickness(std::max(layers, 1));
-        std::vector<float> thicknessUm(std::max(layers, 1));
-        Appearance look;
-        RowSums& row = rows[y];
-        for (int x = 0; x < size; ++x) {
-            const std::size_t at = static_cast<std::size_t>(y) * size + x;
-            const SurfacePoint& point = texels.points[at];
-            if (point.triangle < 0)
-                continue;
-            ++row.covered;
-            const Imath::V3d position = positionAt(surface, point), normal = normalAt(surface, point);
-            const auto reading = probe.read(position, normal, thickness.data());
-            if (!reading.found)
-                ++row.unreadable;
-            int visible = 0;
-            for (int k = 0; k < layers; ++k) {
-                thicknessUm[k] = static_cast<float>(thickness[k]);
-                if (thickness[k] > 1e-3)
-                    visible = k + 1;
-                put(planes.thickness[k], at, thicknessUm[k]);
-            }
-            if (visible > 0)
-                put(planes.coverage[visible - 1], at, 1.f);
-            if (options.materialId)
-                put(planes.materialId, at, ids[visible]);
-            const float height = static_cast<float>(reading.height * displacementScale);
-            put(planes.displacement, at, height);
-            row.maxDisplacement = std::max(row.maxDisplacement, std::abs(height));
-            bool folds = false;
-            // Without the mask one texel of sixteen tells the fraction.
-            if (reading.found && !reading.projected && (options.foldMask || (x % 4 == 0 && y % 4 == 0))) {
-                const Imath::V3d floor = position + normal * (reading.baseOffset + reading.metalHeight);
-                folds = outer.foldsOver(floor, normal);
-                ++row.foldsAsked;
-                row.folds += folds;
-            }
-            if (options.foldMask)
-                put(planes.foldMask, at, folds ? 1.f : 0.f);
-            if (options.vectorDisplacement) {
-                const Imath::V3d vector = vectorOf(outer, reading, position, normal, volume.scale().voxelSize);
-                put(planes.vectors, at, Imath::V3f(vector * displacementScale));
-            }
-            for (std::size_t f = 0; f < fields.size(); ++f)
-                put(planes.fields[f], at,
-                    static_cast<float>(fields[f]->value({position, normal, point.triangle, point.u, point.v})));
-
-            optics.evaluate(thicknessUm.data(), look);
-            put(planes.diffuse, at, look.diffuse);
-            for (int k = 0; k <= layers; ++k)
-                put(planes.lobes[k], at, look.lobes[k].colour);
-            put(planes.baseColour, at, look.baseColour);
-            put(planes.metallic, at, look.metallic);
-            put(planes.roughness, at, look.flattenedRoughness);
-            const Imath::V3d xyz = xyzFromLinear(Imath::V3d(look.baseColour), space);
-            row.colour += linearRec709FromXyz(xyz);
-            if (labFromXyz(xyz).y < -4.0)
-                ++row.green;
-        }
+BakeSummary bakeInto(MapSink& sink, const LayerVolume& volume, const SurfaceMesh& surface, const StackOptics& optics,
+                     const BakeOptions& given, Progress& progress) {
+    BakeOptions options = given;
+    options.gutter = std::clamp(options.gutter, 0, bandRows);
+    BakeSummary summary;
+    summary.tiles = uvTiles(surface);
+    const SurfaceWalk walk(surface);
+    const TangentFrames frames(surface);
+    const TexelSampler sampler(volume, walk, optics, options);
+    std::vector<std::uint8_t> across(surface.triangles.size());
+    tbb::parallel_for(std::size_t(0), across.size(), [&](std::size_t t) {
+        across[t] = static_cast<std::uint8_t>(sampler.pointsAcross(static_cast<int>(t)));
     });
     progress.checkpoint();
-    bakeNormals(surface, texels, planes);
 
-    MapSet set;
+    BakeRows rows(volume, optics, options, bandRows * bandsHeld);
+    const ColourSpace space = optics.features().colourSpace;
+    const double heightUnits =
+        options.displacementUnits * (options.keepExaggeration ? 1.0 : 1.0 / volume.scale().exaggeration);
     RowSums sums;
-    for (const RowSums& row : rows) {
-        sums.covered += row.covered;
-        sums.unreadable += row.unreadable;
-        sums.green += row.green;
-        sums.foldsAsked += row.foldsAsked;
-        sums.folds += row.folds;
-        sums.colour += row.colour;
-        sums.maxDisplacement = std::max(sums.maxDisplacement, row.maxDisplacement);
+    std::size_t overlapping = 0;
+    for (std::size_t i = 0; i < summary.tiles.size(); ++i) {
+        TileBake tile(walk, sampler, frames, options, across, space, heightUnits,
+                      makeTexelMap(walk, options.resolution, options.gutter, summary.tiles[i]), rows);
+        progress.checkpoint();
+        std::vector<MapInfo> maps = rows.maps();
+        if (summary.tiles.size() > 1)
+            for (MapInfo& map : maps)
+                map.udim = udimOf(summary.tiles[i]);
+        sink.begin(maps);
+        const double share = 1.0 / static_cast<double>(summary.tiles.size());
+        tile.run(sink, progress, share * static_cast<double>(i), share);
+        sink.end();
+        for (const RowSums& row : tile.sums()) {
+            sums.covered += row.covered;
+            sums.supersampled += row.supersampled;
+            sums.green += row.green;
+            sums.points += row.points;
+            sums.unreadable += row.unreadable;
+            sums.foldsAsked += row.foldsAsked;
+            sums.folds += row.folds;
+            sums.colour += row.colour;
+            sums.maxDisplacement = std::max(sums.maxDisplacement, row.maxDisplacement);
+        }
+        if (overlapping == 0)
+            summary.overlappingFaces = tile.texels().overlappingFaces;
+        overlapping += tile.texels().overlapping;
     }
-    const double texelCount = static_cast<double>(std::max<std::size_t>(1, sums.covered));
-    set.summary.coveredFraction = static_cast<double>(sums.covered) / (static_cast<double>(size) * size);
-    set.summary.unreadableFraction = static_cast<double>(sums.unreadable) / texelCount;
-    set.summary.greenFraction = static_cast<double>(sums.green) / texelCount;
-    set.summary.foldFraction =
-        static_cast<double>(sums.folds) / static_cast<double>(std::max<std::size_t>(1, sums.foldsAsked));
-    set.summary.meanColour = sums.colour / texelCount;
-    set.summary.maxDisplacement = sums.maxDisplacement;
+    const double texels = static_cast<double>(std::max<std::size_t>(1, sums.covered));
+    summary.texels = sums.covered;
+    summary.coveredFraction = static_cast<double>(sums.covered) /
+                              (static_cast<double>(options.resolution) * options.resolution *
+                               static_cast<double>(std::max<std::size_t>(1, summary.tiles.size())));
+    summary.unreadableFraction = sums.unreadable / std::max(1.0, sums.points);
+    summary.supersampledFraction = static_cast<double>(sums.supersampled) / texels;
+    summary.greenFraction = static_cast<double>(sums.green) / texels;
+    summary.foldFraction = sums.folds / std::max(1.0, sums.foldsAsked);
+    summary.overlapFraction = static_cast<double>(overlapping) / texels;
+    summary.meanColour = sums.colour / texels;
+    summary.maxDisplacement = sums.maxDisplacement;
+    sink.finish(rows.finalNumbers(summary));
+    return summary;
+}
 
-    planes.displacement.numbers.emplace_back("patina_max_displacement", sums.maxDisplacement);
-    planes.displacement.texts.emplace_back("patina_units", "scene units along the normal, zero at the bare metal");
-    if (options.foldMask)
-        planes.foldMask.numbers.emplace_back("patina_fold_fraction", static_cast<float>(set.summary.foldFraction));
-    if (options.vectorDisplacement)
-        planes.vectors.texts.emplace_back("patina_units", "scene units, object space, from the bare metal");
-    for (auto& thickness : planes.thickness)
-        thickness.texts.emplace_back("patina_units", "real micrometres of solid");
-    Appearance bare;
-    optics.evaluate(std::vector<float>(std::max(layers, 1), 0.f).data(), bare);
-    for (int k = 0; k <= layers; ++k) {
-        planes.lobes[k].numbers.emplace_back("patina_ggx_alpha", bare.lobes[k].alpha);
-        planes.lobes[k].numbers.emplace_back("patina_roughness", bare.lobes[k].roughness);
-    }
-
-    const auto take = [&](MapImage& map) {
-        map.colourSpace = space;
-        fillGutter(texels, map);
-        set.maps.push_back(std::move(map));
-    };
-    take(planes.displacement);
-    take(planes.diffuse);
-    for (MapImage& lobe : planes.lobes)
-        take(lobe);
-    take(planes.baseColour);
-    take(planes.metallic);
-    take(planes.roughness);
-    take(planes.normal);
-    for (int k = 0; k < layers; ++k) {
-        take(planes.thickness[k]);
-        take(planes.coverage[k]);
-    }
-    if (options.materialId)
-        take(planes.materialId);
-    if (options.foldMask)
-        take(planes.foldMask);
-    if (options.vectorDisplacement)
-        take(planes.vectors);
-    for (MapImage& field : planes.fields)
-        take(field);
+MapSet bake(const LayerVolume& volume, const SurfaceMesh& surface, const StackOptics& optics,
+            const BakeOptions& options, Progress& progress) {
+    MemorySink sink;
+    MapSet set;
+    set.summary = bakeInto(sink, volume, surface, optics, options, progress);
+    set.maps = std::move(sink.maps);
     return set;
 }
 

@@ -10,8 +10,14 @@
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
+#include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 #include <fmt/format.h>
+
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
 
 namespace patina {
 
@@ -30,13 +36,34 @@ Imf::Chromaticities acescgChromaticities() {
 
 } // namespace
 
-void writeExr(const MapImage& map, const std::filesystem::path& path) {
-    const bool isHalf = !map.halves.empty();
-    const Imf::PixelType type = isHalf ? Imf::HALF : Imf::FLOAT;
-    const std::size_t sampleBytes = isHalf ? sizeof(Imath::half) : sizeof(float);
+struct ExrWriter::File {
+    MapInfo map;
+    std::filesystem::path path;
+    AtomicFile atomic;
+    // A stream of our own tells whether its last bytes have reached the disk; OpenEXR's does not.
+    std::ofstream out;
+    std::unique_ptr<Imf::StdOFStream> stream;
+    std::unique_ptr<Imf::OutputFile> exr;
+    int nextRow = 0;
+
+    File(const MapInfo& map, const std::filesystem::path& path) : map(map), path(path), atomic(path) {}
+
+    template <typename Work> void guarded(const Work& work) {
+        try {
+            work();
+        } catch (const Error&) {
+            throw;
+        } catch (const std::exception& failure) {
+            throw RunError(path.string(), fmt::format("cannot write the map: {}", failure.what()), "is the disk full?");
+        }
+    }
+};
+
+ExrWriter::ExrWriter(const MapInfo& map, const std::filesystem::path& path) : file_(new File(map, path)) {
     Imf::Header header(map.size, map.size);
     header.compression() = Imf::ZIP_COMPRESSION;
-    header.zipCompressionLevel() = 1; // lossless like all levels; a third of the time of the usual 4, a few per cent larger
+    // Lossless like all levels; a third of the time of the usual 4, a few per cent larger.
+    header.zipCompressionLevel() = 1;
     const bool isAcescg = map.colourSpace == ColourSpace::acescg;
     header.insert("patina_colour_space",
                   Imf::StringAttribute(!map.isColour ? "data" : isAcescg ? "acescg" : "lin_rec709"));
@@ -46,26 +73,88 @@ void writeExr(const MapImage& map, const std::filesystem::path& path) {
         header.insert(name.c_str(), Imf::StringAttribute(value));
     for (const auto& [name, value] : map.numbers)
         header.insert(name.c_str(), Imf::FloatAttribute(value));
+    for (const char* name : channelNames(map.channels))
+        header.channels().insert(name, Imf::Channel(map.isHalf ? Imf::HALF : Imf::FLOAT));
+    file_->guarded([&] {
+        const std::string name = file_->atomic.temporary().string();
+        file_->out.open(name, std::ios::binary | std::ios::trunc);
+        file_->stream = std::make_unique<Imf::StdOFStream>(file_->out, name.c_str());
+        file_->exr = std::make_unique<Imf::OutputFile>(*file_->stream, header, 0); // no threads of its own
+    });
+}
 
-    const void* pixels = isHalf ? static_cast<const void*>(map.halves.data()) : map.floats.data();
-    char* data = static_cast<char*>(const_cast<void*>(pixels)); // OpenEXR reads only, but asks for a char*
+ExrWriter::~ExrWriter() = default;
+
+void ExrWriter::write(const void* rows, int count) {
+    const MapInfo& map = file_->map;
+    const Imf::PixelType type = map.isHalf ? Imf::HALF : Imf::FLOAT;
+    const std::size_t pixel = map.pixelBytes(), row = pixel * map.size, sample = map.isHalf ? 2 : 4;
+    // OpenEXR reads only, but asks for a char*, and counts rows from the first of the image.
+    char* data = static_cast<char*>(const_cast<void*>(rows)) - static_cast<std::ptrdiff_t>(row) * file_->nextRow;
     Imf::FrameBuffer frame;
-    std::size_t offset = 0;
     for (const char* name : channelNames(map.channels)) {
-        header.channels().insert(name, Imf::Channel(type));
-        frame.insert(
-            name, Imf::Slice(type, data + offset, sampleBytes * map.channels, sampleBytes * map.channels * map.size));
-        offset += sampleBytes;
+        frame.insert(name, Imf::Slice(type, data, pixel, row));
+        data += sample;
     }
-    AtomicFile file(path);
-    try {
-        Imf::OutputFile out(file.temporary().string().c_str(), header);
-        out.setFrameBuffer(frame);
-        out.writePixels(map.size);
-    } catch (const std::exception& failure) {
-        throw RunError(path.string(), fmt::format("cannot write the map: {}", failure.what()), "is the disk full?");
-    }
-    file.commit();
+    file_->guarded([&] {
+        file_->exr->setFrameBuffer(frame);
+        file_->exr->writePixels(count);
+    });
+    file_->nextRow += count;
+}
+
+void ExrWriter::finish() {
+    file_->guarded([&] {
+        file_->exr.reset();
+        file_->stream.reset();
+        file_->out.flush();
+        if (!file_->out)
+            throw std::runtime_error("its end could not be written");
+        file_->out.close();
+    });
+}
+
+void ExrWriter::setNumbers(const std::vector<std::pair<std::string, float>>& numbers) {
+    if (numbers.empty())
+        return;
+    file_->guarded([&] {
+        // An attribute is its name, 0, its type, 0, the value's size and the value (openexr.com, file layout); the
+        // header lies at the file's beginning.
+        std::fstream file(file_->atomic.temporary(), std::ios::binary | std::ios::in | std::ios::out);
+        std::string header(65536, '\0');
+        file.read(header.data(), static_cast<std::streamsize>(header.size()));
+        header.resize(static_cast<std::size_t>(file.gcount()));
+        file.clear();
+        for (const auto& [name, value] : numbers) {
+            const std::string key = name + std::string("\0float\0\4\0\0\0", 11);
+            const std::size_t at = header.find(key);
+            if (at == std::string::npos)
+                throw std::runtime_error("it has no attribute " + name);
+            std::uint32_t bits;
+            std::memcpy(&bits, &value, 4);
+            char bytes[4];
+            for (int i = 0; i < 4; ++i)
+                bytes[i] = static_cast<char>(bits >> (8 * i) & 255u);
+            file.seekp(static_cast<std::streamoff>(at + key.size()));
+            file.write(bytes, 4);
+        }
+        file.flush();
+        if (!file)
+            throw std::runtime_error("its attributes could not be written");
+    });
+}
+
+void ExrWriter::commit() { file_->atomic.commit(); }
+
+const std::filesystem::path& ExrWriter::temporary() const { return file_->atomic.temporary(); }
+
+void writeExr(const MapImage& map, const std::filesystem::path& path) {
+    MapInfo info = map;
+    info.isHalf = !map.halves.empty();
+    ExrWriter writer(info, path);
+    writer.write(info.isHalf ? static_cast<const void*>(map.halves.data()) : map.floats.data(), map.size);
+    writer.finish();
+    writer.commit();
 }
 
 MapImage readExr(const std::filesystem::path& path) {
@@ -82,7 +171,7 @@ MapImage readExr(const std::filesystem::path& path) {
         const Imf::Channel* first = header.channels().findChannel(channelNames(map.channels)[0]);
         if (!first)
             throw RunError(path.string(), "has neither a channel Y nor channels R, G, B");
-        const bool isHalf = first->type == Imf::HALF;
+        const bool isHalf = map.isHalf = first->type == Imf::HALF;
         const std::size_t count = static_cast<std::size_t>(map.size) * map.size * map.channels;
         char* data;
         if (isHalf) {

@@ -14,7 +14,11 @@ struct MaterialMaps {
     ColourSpace colourSpace = ColourSpace::rec709;
     float maxDisplacement = 0.f; ///< max |h|, scene units: renderers pad bounds by it
 
-    std::string path(const std::string& map) const { return folder + "/" + map + ".exr"; }
+    bool severalTiles = false; ///< the files are NAME.1001.exr …, NAME.<UDIM>.exr together
+
+    std::string path(const std::string& map) const {
+        return folder + "/" + map + (severalTiles ? ".<UDIM>.exr" : ".exr");
+    }
 };
 
 /// A name as USD and MaterialX take it: letters, digits and '_', no digit first.

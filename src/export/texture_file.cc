@@ -12,7 +12,7 @@
 
 namespace patina {
 
-void writeTx(const std::filesystem::path& exr, const std::filesystem::path& tx) {
+void makeTx(const std::filesystem::path& exr, const std::filesystem::path& file, const std::filesystem::path& tx) {
     const OIIO::ImageBuf image(exr.string());
     OIIO::ImageSpec settings;
     settings.tile_width = settings.tile_height = 64;
@@ -23,11 +23,14 @@ void writeTx(const std::filesystem::path& exr, const std::filesystem::path& tx) 
     settings.attribute("maketx:highlightcomp", 0);
     settings.attribute("maketx:constant_color_detect", 0);
     settings.attribute("maketx:monochrome_detect", 0);
-    AtomicFile file(tx);
     std::ostringstream said;
-    if (!OIIO::ImageBufAlgo::make_texture(OIIO::ImageBufAlgo::MakeTxTexture, image, file.temporary().string(), settings,
-                                          &said))
+    if (!OIIO::ImageBufAlgo::make_texture(OIIO::ImageBufAlgo::MakeTxTexture, image, file.string(), settings, &said))
         throw RunError(tx.string(), fmt::format("cannot write the texture: {}", said.str()), "is the disk full?");
+}
+
+void writeTx(const std::filesystem::path& exr, const std::filesystem::path& tx) {
+    AtomicFile file(tx);
+    makeTx(exr, file.temporary(), tx);
     file.commit();
 }
 

@@ -9,4 +9,7 @@ namespace patina {
 /// lossless, the pixels and attributes of the finest level unchanged. \throws RunError
 void writeTx(const std::filesystem::path& exr, const std::filesystem::path& tx);
 
+/// The same without a temporary file. \param file  what is written \param tx  what errors name
+void makeTx(const std::filesystem::path& exr, const std::filesystem::path& file, const std::filesystem::path& tx);
+
 } // namespace patina

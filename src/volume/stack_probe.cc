@@ -234,6 +234,20 @@ int StackProbe::layerCount() const {
     return nest_->layers;
 }
 
+Imath::V3d StackProbe::reliefSlope(const Imath::V3d& point, const Imath::V3d& normal, const Reading& reading) const {
+    if (!reading.found || reading.projected)
+        return Imath::V3d(0.0);
+    const Nest& nest = *nest_;
+    const auto slopeOf = [&](int k, double offset) {
+        Imath::V3d gradient;
+        nest.sampler.valueAndGradient(k, nest.sampler.locate((point + normal * offset) / nest.scale.voxelSize), gradient);
+        const double along = gradient.dot(normal);
+        // Steeper than 1 in 0.05 is a wall, which no height has.
+        return (normal * along - gradient) / std::max(along, 0.05 * gradient.length() + 1e-300);
+    };
+    return slopeOf(nest.layers, reading.baseOffset + reading.height) - slopeOf(nest.sampler.reference(), reading.baseOffset);
+}
+
 StackProbe::Reading StackProbe::read(const Imath::V3d& point, const Imath::V3d& normal, double* thicknessUm) const {
     const Nest& nest = *nest_;
     const VolumeScale& scale = nest.scale;

@@ -32,6 +32,11 @@ class StackProbe {
     /// \param thicknessUm  receives each layer's thickness in real µm, bottom to top (layerCount() values, all >= 0)
     Reading read(const Imath::V3d& point, const Imath::V3d& normal, double* thicknessUm) const;
 
+    /// The gradient of the height along the surface at a point that read() was asked for: how much steeper the outermost
+    /// interface is there than the base; a vector in the plane of the normal, as drawn. 0 where read() found nothing or
+    /// had to project.
+    Imath::V3d reliefSlope(const Imath::V3d& point, const Imath::V3d& normal, const Reading& reading) const;
+
     int layerCount() const;
 
   private:

@@ -2,6 +2,7 @@
 // A model under thick layers, baked, displaced and held against its volume.
 
 #include "displaced_distance.h"
+#include "seam_jumps.h"
 
 #include "operators/coat.h"
 #include "optics/material_library.h"
@@ -18,7 +19,10 @@ namespace patina::test {
 // A model under a coat of 4 to 8 voxels in soft hills, its maps, and how far the displaced mesh is from the volume.
 struct Measured {
     DisplacedDistance displaced, undisplaced;
-    double foldFraction = 0.0, seconds = 0.0;
+    double foldFraction = 0.0;
+    std::vector<double> seams; ///< jumps of the height across UV seams, voxels, sorted
+
+    double seamsUnder(double share) const { return seams[static_cast<std::size_t>(share * double(seams.size() - 1))]; }
 };
 
 inline Measured measure(Mesh mesh, int voxels, int resolution, int dice, bool atlas, bool vectors = false) {
@@ -55,6 +59,15 @@ inline Measured measure(Mesh mesh, int voxels, int resolution, int dice, bool at
     measured.displaced = measureDisplaced(*piece->volume, piece->surface, zero, *maps.find("fold_mask"), dice);
     std::fill(zero.floats.begin(), zero.floats.end(), 0.f);
     measured.undisplaced = measureDisplaced(*piece->volume, piece->surface, zero, *maps.find("fold_mask"), 1);
+    if (!vectors) {
+        measured.seams = seamJumps(piece->surface, *maps.find("displacement"), 3);
+        for (double& jump : measured.seams)
+            jump /= scale.voxelSize;
+        if (!measured.seams.empty())
+            std::printf("seams: %zu points, jumps: 99 %% under %.4f, 99.9 %% under %.4f, max %.4f voxel\n",
+                        measured.seams.size(), measured.seamsUnder(0.99), measured.seamsUnder(0.999),
+                        measured.seams.back());
+    }
     const auto print = [](const char* name, const DistanceFigures& figures) {
         std::printf("%s: %zu points, %zu masked: rms %.4f, 99.9 %% under %.4f, max %.4f voxel\n", name, figures.points,
                     figures.masked, figures.rms, figures.p999, figures.max);

@@ -1,4 +1,4 @@
-// The displaced mesh is the voxel surface: what a displacement map is for; on a scan.
+// The displaced mesh is the voxel surface: what a displacement map is for; on a scan and on a cage, as fine as maps get.
 
 #include "displaced_model.h"
 
@@ -22,6 +22,16 @@ TEST(DisplacementDistance, TheDisplacedScanOfTheBuddhaIsTheVoxelSurface) {
     EXPECT_LT(measured.displaced.volumeToMesh.rms, 0.05);
     for (const auto& figures : {measured.displaced.meshToVolume, measured.displaced.volumeToMesh})
         EXPECT_LT(figures.p999, 0.5);
+}
+
+TEST(DisplacementDistance, TheDisplacedCageOfSpotWithItsOwnUvsIsTheVoxelSurface) {
+    const test::Measured measured =
+        test::measure(readMesh(PATINA_SOURCE_DIR "/data/meshes/spot_control_mesh.obj"), 512, 4096, 2, false);
+    test::expectControl(measured);
+    for (const auto& figures : {measured.displaced.meshToVolume, measured.displaced.volumeToMesh}) {
+        EXPECT_LT(figures.rms, 0.05);
+        EXPECT_LT(figures.p999, 0.25);
+    }
 }
 
 } // namespace

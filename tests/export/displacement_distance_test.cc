@@ -9,7 +9,7 @@ namespace patina {
 namespace {
 
 TEST(DisplacementDistance, TheDisplacedSphereIsTheVoxelSurface) {
-    const test::Measured measured = test::measure(makeShape("sphere"), 96, 512, 2, false);
+    const test::Measured measured = test::measure(makeShape("sphere"), 96, 1024, 2, false);
     test::expectControl(measured);
     for (const auto& figures : {measured.displaced.meshToVolume, measured.displaced.volumeToMesh}) {
         EXPECT_GT(figures.points, 10000u);
@@ -18,6 +18,8 @@ TEST(DisplacementDistance, TheDisplacedSphereIsTheVoxelSurface) {
         EXPECT_LT(figures.max, 0.5);
     }
     EXPECT_LT(measured.foldFraction, 1e-3);
+    ASSERT_GT(measured.seams.size(), 100u);
+    EXPECT_LT(measured.seams.back(), 0.02);
 }
 
 TEST(DisplacementDistance, TheDisplacedCageOfSpotIsTheVoxelSurface) {

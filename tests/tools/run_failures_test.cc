@@ -9,6 +9,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstring>
 #include <map>
@@ -127,6 +128,52 @@ TEST_F(RunFailures, AFileTooLargeForTheSystemLeavesNothingHalfWritten) {
         EXPECT_EQ(filesIn(folder.path() / "out").count("report.json"), 0u);
     }
     std::signal(SIGXFSZ, oldHandler);
+}
+
+TEST_F(RunFailures, ABakeThatFailsLeavesNoMap) {
+    ASSERT_EQ(run("out", {"--picture", "0"}).exitCode, 0);
+    const auto whole = sizesIn(folder.path() / "out");
+    // Too large for the system: the largest map, then the copy of it with mip levels.
+    rlimit before{};
+    ::getrlimit(RLIMIT_FSIZE, &before);
+    const auto oldHandler = std::signal(SIGXFSZ, SIG_IGN);
+    const auto expectNothing = [&](const std::uintmax_t limit, const Arguments& more) {
+        rlimit small = before;
+        small.rlim_cur = limit;
+        ::setrlimit(RLIMIT_FSIZE, &small);
+        Arguments words{"bake", "out/a.vdb", "-o", "baked", "--resolution", "64"};
+        words.insert(words.end(), more.begin(), more.end());
+        const Outcome outcome = vdbPatina(words, folder.path());
+        ::setrlimit(RLIMIT_FSIZE, &before);
+        EXPECT_EQ(outcome.exitCode, 1) << outcome.err;
+        EXPECT_EQ(outcome.out, "");
+        EXPECT_THAT(outcome.err, HasSubstr("error: baked/"));
+        EXPECT_TRUE(filesIn(folder.path() / "baked").empty());
+    };
+    std::uintmax_t largest = 0;
+    for (const auto& [name, size] : whole)
+        if (fs::path(name).extension() == ".exr")
+            largest = std::max(largest, size);
+    expectNothing(largest / 2, {});
+    expectNothing(largest - 1, {}); // its last byte alone
+    expectNothing(largest, {"--tx"});
+    std::signal(SIGXFSZ, oldHandler);
+
+    // A disk that is full when half of the maps are written.
+    const fs::path disk = folder.path() / "disk";
+    fs::create_directory(disk);
+    std::uintmax_t total = 0;
+    for (const auto& [name, size] : whole)
+        if (fs::path(name).extension() == ".exr")
+            total += size;
+    const std::string option = "size=" + std::to_string(total / 2);
+    if (::mount("tmpfs", disk.c_str(), "tmpfs", 0, option.c_str()) != 0)
+        return; // not allowed to here
+    const Outcome outcome = vdbPatina({"bake", "out/a.vdb", "-o", "disk", "--resolution", "64"}, folder.path());
+    EXPECT_EQ(outcome.exitCode, 1) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("error: disk"));
+    EXPECT_TRUE(filesIn(disk).empty());
+    ::umount2(disk.c_str(), MNT_DETACH);
 }
 
 TEST_F(RunFailures, AnOlderResultSurvivesThem) {

@@ -86,11 +86,18 @@ TEST_F(VolumeCommands, BakeGivesTheMapsOfTheRun) {
     const Outcome outcome = run({"bake", "ball/ball.vdb", "sphere", "-o", "baked", "--resolution", "64"});
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
     std::set<std::string> expected = filesIn(folder.path() / "ball");
-    for (const char* notBaked : {"ball.vdb", "preview.png", "report.json"})
+    for (const char* notBaked : {"ball.vdb", "preview.png"})
         expected.erase(notBaked);
     EXPECT_EQ(filesIn(folder.path() / "baked"), expected);
     for (const char* map : {"displacement.exr", "thickness_02_soot.exr", "diffuse.exr", "normal.exr"})
         EXPECT_EQ(readFile(folder.path() / "baked" / map), readFile(folder.path() / "ball" / map)) << map;
+
+    const json report = json::parse(readFile(folder.path() / "baked/report.json"));
+    EXPECT_EQ(report["schema"], 1);
+    EXPECT_EQ(report["content_hash"], hash);
+    EXPECT_EQ(report["maps"], json::parse(readFile(folder.path() / "ball/report.json"))["maps"]);
+    EXPECT_EQ(report["maps"]["fold_fraction"], 0.0);
+    EXPECT_EQ(report["outputs"].size() + 1, expected.size()); // and itself
 
     // Without a model: the mesh that the run left beside the volume.
     const Outcome beside = run({"bake", "ball/ball.vdb", "-o", "beside", "--resolution", "64"});
@@ -98,10 +105,64 @@ TEST_F(VolumeCommands, BakeGivesTheMapsOfTheRun) {
     EXPECT_EQ(filesIn(folder.path() / "beside"), expected);
     EXPECT_EQ(readFile(folder.path() / "beside/displacement.exr"), readFile(folder.path() / "ball/displacement.exr"));
 
+    // Into the run's own folder: its report stays.
+    const std::string ofTheRun = readFile(folder.path() / "ball/report.json");
+    ASSERT_EQ(run({"bake", "ball/ball.vdb", "-o", "ball", "--resolution", "64"}).exitCode, 0);
+    EXPECT_EQ(readFile(folder.path() / "ball/report.json"), ofTheRun);
+    EXPECT_EQ(filesIn(folder.path() / "ball").count("bake_report.json"), 1u);
+
     const Outcome other = run({"bake", "ball/ball.vdb", "strip", "-o", "other", "--resolution", "64"});
     EXPECT_EQ(other.exitCode, 4);
     EXPECT_THAT(other.err, HasSubstr("strip: is not the model that 'ball/ball.vdb' was made from ('sphere')"));
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "other"));
+}
+
+// Two quads side by side, 1 cm each: the first fills the unit square, the second lies from one u to another.
+std::string twoQuads(const std::string& firstU, const std::string& lastU) {
+    return "v 0 0 0\nv 0.01 0 0\nv 0.02 0 0\nv 0 0.01 0\nv 0.01 0.01 0\nv 0.02 0.01 0\n"
+           "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+           "vt " + firstU + " 0\nvt " + lastU + " 0\nvt " + lastU + " 1\nvt " + firstU + " 1\n"
+           "f 1/1 2/2 5/3 4/4\nf 2/5 3/6 6/7 5/8\n";
+}
+
+TEST_F(VolumeCommands, SeveralUvTilesGiveSeveralFiles) {
+    folder.file("quads.obj", twoQuads("1", "2"));
+    const Arguments words = small({"run", "ball.patina", "quads.obj", "-o", "tiles", "--scheme", "none", "--picture", "0"});
+    const Outcome outcome = run(words);
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    const auto files = filesIn(folder.path() / "tiles");
+    for (const char* map : {"displacement", "diffuse", "thickness_02_soot"})
+        for (const char* tile : {".1001.exr", ".1002.exr"})
+            EXPECT_EQ(files.count(map + std::string(tile)), 1u) << map << tile;
+    EXPECT_EQ(files.count("displacement.exr"), 0u);
+    EXPECT_THAT(readFile(folder.path() / "tiles/ball.usda"), HasSubstr("@./base_color.<UDIM>.exr@"));
+    EXPECT_THAT(readFile(folder.path() / "tiles/ball.mtlx"), HasSubstr("base_color.&lt;UDIM&gt;.exr"));
+    EXPECT_EQ(json::parse(readFile(folder.path() / "tiles/report.json"))["maps"]["udims"], (json{1001, 1002}));
+    // The mesh beside the volume has the UVs of the maps, a hair inside their tiles.
+    const Outcome again = run({"bake", "tiles/ball.vdb", "-o", "again", "--scheme", "none", "--resolution", "64"});
+    ASSERT_EQ(again.exitCode, 0) << again.err;
+    EXPECT_EQ(readFile(folder.path() / "again/diffuse.1002.exr"), readFile(folder.path() / "tiles/diffuse.1002.exr"));
+}
+
+TEST_F(VolumeCommands, ChartsThatCannotBeBakedAreToldBeforeTheRun) {
+    const struct {
+        std::string obj, error;
+    } cases[] = {{twoQuads("0", "1"), "faces 1 and 2"},                               // on each other
+                 {twoQuads("1", "0"), "faces 1 and 2"},                               // the same, mirrored
+                 {twoQuads("0.5", "1.5"), "face 2: its UV (0.5, 0) lies outside"},    // in two tiles
+                 {twoQuads("-1", "0"), "face 2: its UV (-1, 0) lies outside"},        // in none that has a number
+                 {twoQuads("11", "12"), "face 2: its UV (11, 0) lies outside"}};
+    for (const auto& one : cases) {
+        folder.file("quads.obj", one.obj);
+        const Outcome outcome = run(small({"run", "ball.patina", "quads.obj", "-o", "no", "--scheme", "none"}));
+        EXPECT_EQ(outcome.exitCode, 4) << outcome.err;
+        EXPECT_THAT(outcome.err, HasSubstr(one.error));
+        EXPECT_THAT(outcome.err, HasSubstr("--atlas"));
+        EXPECT_FALSE(std::filesystem::exists(folder.path() / "no"));
+    }
+    const Outcome outcome =
+        run(small({"run", "ball.patina", "quads.obj", "-o", "yes", "--scheme", "none", "--atlas", "--picture", "0"}));
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
 }
 
 TEST_F(VolumeCommands, RenderMakesAPictureWithOrWithoutTheModel) {

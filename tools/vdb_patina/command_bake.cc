@@ -1,9 +1,11 @@
 // vdb-patina bake VOLUME [MODEL]
 
+#include "base/atomic_file.h"
 #include "commands.h"
 #include "console.h"
 #include "existing_volume.h"
 #include "outputs.h"
+#include "report.h"
 
 #include <fmt/format.h>
 
@@ -20,11 +22,20 @@ void bakeVolume(const Arguments& arguments, const Options& options, Console& con
     const ExistingVolume input = loadExisting(arguments.volume, arguments.model, options, console);
     const std::string name = std::filesystem::path(arguments.volume).stem().string();
     const auto folder = outputFolder(options, name);
+    // The report of the run stays beside its volume.
+    std::error_code ignored;
+    const bool besideVolume =
+        std::filesystem::equivalent(folder, std::filesystem::absolute(arguments.volume).parent_path(), ignored);
+    const auto reportTo = reportFile(options, folder, besideVolume ? "bake_report.json" : "report.json");
     std::vector<std::string> outputs;
     const StackOptics optics = opticsOf(input.volume, input.materials, options);
     const BakeSummary summary =
         writeMaps(input.volume, input.model, optics, options, folder, outputs, console, arguments.volume);
     writeMeshes(input.model, name, folder, outputs, console);
+    nlohmann::ordered_json report = makeBakeReport(arguments.volume, input.volume, input.model, options);
+    addMapsToReport(report, summary);
+    finishReport(report, console, outputs);
+    writeTextFile(reportTo, report.dump(2) + "\n");
     console.result(fmt::format("{}: {} files, displacement at most {:.4g} scene units", folder.string(), outputs.size(),
                                summary.maxDisplacement));
 }
@@ -37,6 +48,10 @@ void addBakeCommand(CLI::App& app, Options& options, Action& action) {
     command->add_option("VOLUME", arguments->volume, "A .vdb that `run` wrote")->required();
     command->add_option("MODEL", arguments->model,
                         "The model it was made from (default: the .obj that `run` wrote beside it)");
+    command->add_option("--report", options.report,
+                        "Where the report goes (default: report.json in the folder, bake_report.json in the volume's)")
+        ->type_name("FILE")
+        ->group("Results");
     addGeneralOptions(*command, options);
     addOutputOption(*command, options);
     addModelOptions(*command, options);

@@ -14,6 +14,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <utility>
+#include <vector>
 
 namespace patina::tool {
 
@@ -41,28 +44,73 @@ std::string shapeHint(const std::string& name, const std::vector<std::string>& s
     return hint.empty() ? "shapes are " + fmt::format("{}", fmt::join(shapes, ", ")) : hint;
 }
 
-// The maps are one tile: what does not fit is told before a long run and not after it. UVs that stick out by a texel or
-// two, as packers leave them, are moved to the border; NAME.obj has them so.
+// What does not fit into UV tiles is told before a long run and not after it. UVs that stick out of their tile by a texel
+// or two, as packers leave them, are moved to its border; NAME.obj has them so. With several tiles that is half a texel of
+// a map of 4096 inside: what lies on the border itself other programs read from the next tile.
 void fitUvs(Mesh& mesh, const std::string& name, Console& console) {
     constexpr float tolerance = 0.005f;
+    const auto sticksOut = [&](const Imath::V2f& uv, const Imath::V2f& low) {
+        return !(uv.x >= low.x - tolerance && uv.x <= low.x + 1.f + tolerance && uv.y >= low.y - tolerance &&
+                 uv.y <= low.y + 1.f + tolerance);
+    };
+    std::vector<Imath::V2f> tiles; // low corners, by face
     std::size_t corner = 0;
-    for (std::size_t face = 0; face < mesh.faceCount(); ++face)
+    bool several = false;
+    for (std::size_t face = 0; face < mesh.faceCount(); ++face) {
+        Imath::V2d middle(0.0);
+        for (int i = 0; i < mesh.faceSizes[face]; ++i)
+            middle += Imath::V2d(mesh.uvs[mesh.faceUvs[corner + i]]) / double(mesh.faceSizes[face]);
+        Imath::V2f tile(static_cast<float>(std::floor(middle.x)), static_cast<float>(std::floor(middle.y)));
+        bool home = true; // in the first tile, on whose border a face without an area may lie
+        for (int i = 0; i < mesh.faceSizes[face]; ++i)
+            home = home && !sticksOut(mesh.uvs[mesh.faceUvs[corner + i]], Imath::V2f(0.f));
+        if (home)
+            tile = Imath::V2f(0.f);
+        const bool numbered = tile.x >= 0.f && tile.x <= 9.f && tile.y >= 0.f && tile.y <= 899.f; // false for NaN
         for (int i = 0; i < mesh.faceSizes[face]; ++i, ++corner) {
             const Imath::V2f uv = mesh.uvs[mesh.faceUvs[corner]];
-            if (!(uv.x >= -tolerance && uv.x <= 1.f + tolerance && uv.y >= -tolerance && uv.y <= 1.f + tolerance))
+            if (!numbered || sticksOut(uv, tile))
                 throw ModelError(
                     name,
-                    fmt::format("face {}: its UV ({:.5g}, {:.5g}) lies outside the unit square", face + 1, uv.x, uv.y),
-                    "move the UVs into one tile, or replace them with --atlas");
+                    fmt::format("face {}: its UV ({:.5g}, {:.5g}) lies outside the {}", face + 1, uv.x, uv.y,
+                                numbered && tile != Imath::V2f(0.f)
+                                    ? fmt::format("tile {} of the others", 1001 + int(tile.x) + 10 * int(tile.y))
+                                    : std::string("unit square")),
+                    "move the UVs into one tile (or each face into one with a number), or replace them with --atlas");
         }
-    float furthest = 0.f;
-    for (Imath::V2f& uv : mesh.uvs) {
-        const Imath::V2f inside(std::clamp(uv.x, 0.f, 1.f), std::clamp(uv.y, 0.f, 1.f));
-        furthest = std::max({furthest, std::abs(uv.x - inside.x), std::abs(uv.y - inside.y)});
-        uv = inside;
+        several = several || tile != Imath::V2f(0.f);
+        tiles.push_back(tile);
     }
-    if (furthest > 1e-4f)
-        console.warning(fmt::format("UVs reach {:.2g} beyond the unit square and were moved to its border", furthest));
+    const float inset = several ? 1.f / 8192.f : 0.f;
+    float furthest = 0.f;
+    const auto clamped = [&](const Imath::V2f& uv, const Imath::V2f& low) {
+        const Imath::V2f inside(std::clamp(uv.x, low.x + inset, low.x + 1.f - inset),
+                                std::clamp(uv.y, low.y + inset, low.y + 1.f - inset));
+        furthest = std::max({furthest, std::abs(uv.x - inside.x), std::abs(uv.y - inside.y)});
+        return inside;
+    };
+    if (several) {
+        std::map<std::pair<int, std::pair<float, float>>, int> moved; // a UV may be used from two tiles
+        corner = 0;
+        for (std::size_t face = 0; face < mesh.faceCount(); ++face)
+            for (int i = 0; i < mesh.faceSizes[face]; ++i, ++corner) {
+                const int index = mesh.faceUvs[corner];
+                const Imath::V2f inside = clamped(mesh.uvs[index], tiles[face]);
+                if (inside == mesh.uvs[index])
+                    continue;
+                const auto [found, isNew] = moved.emplace(
+                    std::make_pair(index, std::make_pair(inside.x, inside.y)), static_cast<int>(mesh.uvs.size()));
+                if (isNew)
+                    mesh.uvs.push_back(inside);
+                mesh.faceUvs[corner] = found->second;
+            }
+    } else {
+        for (Imath::V2f& uv : mesh.uvs)
+            uv = clamped(uv, Imath::V2f(0.f));
+    }
+    if (furthest > std::max(1e-4f, 2.f * inset))
+        console.warning(fmt::format("UVs reach {:.2g} beyond {} and were moved to its border", furthest,
+                                    several ? "their tile" : "the unit square"));
 }
 
 // The model becomes its piece in the box.

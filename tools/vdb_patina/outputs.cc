@@ -1,8 +1,9 @@
 #include "outputs.h"
 
 #include "base/atomic_file.h"
+#include "base/errors.h"
+#include "export/map_files.h"
 #include "export/materialx_file.h"
-#include "export/texture_file.h"
 #include "export/usd_file.h"
 #include "surface/mesh_file.h"
 #include "volume/vdb_file.h"
@@ -30,20 +31,15 @@ std::filesystem::path outputFolder(const Options& options, const std::string& na
     return folder;
 }
 
-// Displacement is in the model's units, which a volume of very small voxels is not.
-static void toModelUnits(MapSet& maps, double magnification) {
-    if (magnification == 1.0)
-        return;
-    for (MapImage& map : maps.maps) {
-        if (map.name != "displacement" && map.name != "vector_displacement")
-            continue;
-        for (float& value : map.floats)
-            value = static_cast<float>(value / magnification);
-        for (auto& [name, number] : map.numbers)
-            if (name == "patina_max_displacement")
-                number = static_cast<float>(number / magnification);
-    }
-    maps.summary.maxDisplacement = static_cast<float>(maps.summary.maxDisplacement / magnification);
+std::filesystem::path reportFile(const Options& options, const std::filesystem::path& folder,
+                                 const std::string& name) {
+    if (options.report.empty())
+        return folder / name;
+    // Not only found out when all is done.
+    if (std::filesystem::is_directory(options.report))
+        throw RunError(options.report, "is a folder", "--report takes the name of a file");
+    const AtomicFile writable(options.report);
+    return options.report;
 }
 
 // What the surface was made by (surface/limit_surface.h), as USD calls it.
@@ -89,6 +85,7 @@ static void writeScene(const LayerVolume& volume, const Model& model, const Bake
     scene.maps.baked = true;
     scene.maps.colourSpace = options.colourSpace == "acescg" ? ColourSpace::acescg : ColourSpace::rec709;
     scene.maps.maxDisplacement = summary.maxDisplacement;
+    scene.maps.severalTiles = summary.tiles.size() > 1;
     // Paths hold where the folder is moved together with the volume.
     std::error_code failure;
     const auto relative = std::filesystem::proximate(volumeFile, folder, failure);
@@ -118,38 +115,37 @@ BakeSummary writeMaps(const LayerVolume& volume, const Model& model, const Stack
     bakeOptions.foldMask = options.foldMask;
     bakeOptions.vectorDisplacement = options.vectorDisplacement;
     bakeOptions.fields = options.fields;
-    MapSet maps;
+    // Displacement is in the model's units, which a volume of very small voxels is not.
+    bakeOptions.displacementUnits = 1.0 / model.magnification();
+    MapFiles files(folder, {{"patina_program", "vdb-patina " PATINA_VERSION},
+                            {"patina_script", volume.provenance.scriptName},
+                            {"patina_model", volume.provenance.model}});
+    BakeSummary summary;
     {
         const ProgressStage stage(console, "bake maps");
-        maps = bake(volume, model.surface, optics, bakeOptions, console);
+        summary = bakeInto(files, volume, model.surface, optics, bakeOptions, console);
     }
-    toModelUnits(maps, model.magnification());
     // One texel in a thousand is what creases give that no renderer shows.
-    if (maps.summary.foldFraction > 1e-3 && !options.vectorDisplacement)
+    if (summary.foldFraction > 1e-3 && !options.vectorDisplacement)
         console.warning(fmt::format("on {:.2g} % of the surface the layers hang over: a height map draws walls there; "
                                     "--vector-displacement follows them, --fold-mask shows where",
-                                    maps.summary.foldFraction * 100.0));
+                                    summary.foldFraction * 100.0));
+    if (summary.overlapFraction > 0.0)
+        console.warning(fmt::format("{:.2g} % of the charts lie on each other in the UVs, as do faces {} and {}: the "
+                                    "face with the smaller number is baked there",
+                                    summary.overlapFraction * 100.0, summary.overlappingFaces.first + 1,
+                                    summary.overlappingFaces.second + 1));
     {
         const ProgressStage stage(console, "write maps");
-        for (MapImage& map : maps.maps) {
-            console.checkpoint();
-            map.texts.emplace_back("patina_program", "vdb-patina " PATINA_VERSION);
-            map.texts.emplace_back("patina_script", volume.provenance.scriptName);
-            map.texts.emplace_back("patina_model", volume.provenance.model);
-            writeExr(map, folder / (map.name + ".exr"));
-            outputs.push_back(map.name + ".exr");
-            const std::string stem = map.name;
-            map = {}; // written: its memory is free for the rest
-            if (options.tx) {
-                writeTx(folder / (stem + ".exr"), folder / (stem + ".tx"));
-                outputs.push_back(stem + ".tx");
-            }
-        }
+        if (options.tx)
+            files.makeTextures(console);
+        for (std::string& file : files.commit())
+            outputs.push_back(std::move(file));
     }
     const std::string name = volumeFile.empty() ? volume.provenance.scriptName : volumeFile.stem().string();
-    writeScene(volume, model, maps.summary, options, name, volumeFile.empty() ? folder / (name + ".vdb") : volumeFile,
+    writeScene(volume, model, summary, options, name, volumeFile.empty() ? folder / (name + ".vdb") : volumeFile,
                folder, outputs, console);
-    return maps.summary;
+    return summary;
 }
 
 void writeMeshes(const Model& model, const std::string& name, const std::filesystem::path& folder,

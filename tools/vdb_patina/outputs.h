@@ -21,6 +21,11 @@ StackOptics opticsOf(const LayerVolume& volume, const MaterialLibrary& materials
 /// The folder for results: -o, or one named after the result. Made, and checked for being writable.
 std::filesystem::path outputFolder(const Options& options, const std::string& name);
 
+/// Where the report goes: --report, or NAME in the folder; found out before the work is done that it can be written.
+/// \throws RunError where it cannot
+std::filesystem::path reportFile(const Options& options, const std::filesystem::path& folder,
+                                 const std::string& name = "report.json");
+
 /// Bakes and writes all maps, and NAME.usda and NAME.mtlx that read them.
 /// \param volumeFile  where the volume lies, and what names the scene; empty: NAME.vdb in the folder, NAME the script's
 /// \return their summary; file names are appended to `outputs`

@@ -1,5 +1,6 @@
 #include "report.h"
 
+#include "export/texel_map.h"
 #include "optics/colour.h"
 #include "surface/mesh_repair.h"
 
@@ -140,10 +141,35 @@ Json makeReport(const Program& program, const Model& model, const Options& optio
 void addMapsToReport(Json& report, const BakeSummary& summary) {
     const Imath::V3d lab = labFromXyz(xyzFromLinearRec709(summary.meanColour));
     report["maps"] = {{"covered_fraction", summary.coveredFraction},
+                      {"texels", summary.texels},
                       {"unreadable_fraction", summary.unreadableFraction},
+                      {"fold_fraction", summary.foldFraction},
+                      {"supersampled_fraction", summary.supersampledFraction},
+                      {"overlapping_fraction", summary.overlapFraction},
                       {"max_displacement_units", summary.maxDisplacement},
                       {"mean_colour_lab", {lab.x, lab.y, lab.z}},
                       {"green_fraction", summary.greenFraction}};
+    report["maps"]["udims"] = Json::array();
+    for (const Imath::V2i& tile : summary.tiles)
+        report["maps"]["udims"].push_back(udimOf(tile));
+}
+
+Json makeBakeReport(const std::string& volumeFile, const LayerVolume& volume, const Model& model,
+                    const Options& options) {
+    Json report;
+    report["schema"] = 1;
+    report["program"] = "vdb-patina " PATINA_VERSION;
+    report["inputs"] = {{"volume", volumeFile},
+                        {"script", volume.provenance.scriptName},
+                        {"model", model.name},
+                        {"model_hash", volume.provenance.modelHash},
+                        {"voxel_size_units", volume.scale().voxelSize / model.magnification()},
+                        {"voxel_size_um", volume.scale().voxelSize * volume.scale().metresPerUnit * 1e6},
+                        {"exaggeration", volume.scale().exaggeration},
+                        {"resolution", options.resolution}};
+    report["layers"] = volume.layers();
+    report["content_hash"] = contentHash(volume);
+    return report;
 }
 
 double peakMemoryBytes() {

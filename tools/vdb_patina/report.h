@@ -23,6 +23,10 @@ nlohmann::ordered_json makeReport(const Program& program, const Model& model, co
 /// The report's array of statements.
 nlohmann::ordered_json describeStatements(const std::vector<StatementReport>& statements);
 
+/// The same for `bake`: what was read.
+nlohmann::ordered_json makeBakeReport(const std::string& volumeFile, const LayerVolume& volume, const Model& model,
+                                      const Options& options);
+
 void addMapsToReport(nlohmann::ordered_json& report, const BakeSummary& summary);
 void finishReport(nlohmann::ordered_json& report, const Console& console, const std::vector<std::string>& outputs);
 

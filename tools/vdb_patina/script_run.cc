@@ -1,5 +1,6 @@
 #include "script_run.h"
 
+#include "export/texel_map.h"
 #include "outputs.h"
 #include "picture.h"
 #include "report.h"
@@ -88,6 +89,8 @@ RunOptions runOptionsOf(const Task& task, const Options& options) {
 }
 
 void checkBudget(const Task& task, const Options& options, Console& console) {
+    if (options.bakeMaps)
+        checkCharts(task.model.surface, options.resolution); // told before a long run and not after it
     const Budget budget = estimateBudget(task.program, task.model.whole ? task.model.whole->work() : task.model.surface, task.model.scale, options.resolution);
     const double limit = options.budgetGiB > 0.0 ? options.budgetGiB * 1073741824.0 : 0.8 * machineMemoryBytes();
     const std::string text = fmt::format(
@@ -109,16 +112,6 @@ void warnAboutClamping(const RunResult& result, Console& console) {
         if (statement.operation.clampedBelow + statement.operation.clampedAbove > 0)
             console.warning(fmt::format("line {}: the map left 0…1 at {} voxels and was clamped there", statement.line,
                                         statement.operation.clampedBelow + statement.operation.clampedAbove));
-}
-
-fs::path reportFile(const Options& options, const fs::path& folder) {
-    if (options.report.empty())
-        return folder / "report.json";
-    // Not only found out when all is done.
-    if (fs::is_directory(options.report))
-        throw RunError(options.report, "is a folder", "--report takes the name of a file");
-    const AtomicFile writable(options.report);
-    return options.report;
 }
 
 void writeResults(const Task& task, const RunResult& result, const nlohmann::ordered_json& earlier,

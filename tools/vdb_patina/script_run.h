@@ -35,9 +35,6 @@ RunOptions runOptionsOf(const Task& task, const Options& options);
 /// Says what the run needs. \throws Error (over budget) where that is more than allowed and not forced
 void checkBudget(const Task& task, const Options& options, Console& console);
 
-/// Where the report goes; found out before the work is done that it can be written there.
-std::filesystem::path reportFile(const Options& options, const std::filesystem::path& folder);
-
 /// Volume, maps, meshes, picture and report of a run that is done.
 /// \param earlier  statements that a resumed run had finished before
 void writeResults(const Task& task, const RunResult& result, const nlohmann::ordered_json& earlier,

@@ -1,0 +1,35 @@
+#pragma once
+// How much a map differs from one side of a UV seam to the other.
+
+#include "displaced_distance.h"
+
+#include "surface/surface_walk.h"
+
+namespace patina::test {
+
+/// |difference| of the bilinear reads from both sides, at `perEdge` points of every edge of the surface whose triangles
+/// do not meet in the UVs; in the map's units, sorted.
+inline std::vector<double> seamJumps(const SurfaceMesh& surface, const MapImage& map, int perEdge) {
+    const SurfaceWalk walk(surface);
+    std::vector<double> jumps;
+    const auto uv = [&](int triangle, int corner) {
+        return Imath::V2d(surface.uvs[surface.triangleUvs[triangle][corner % 3]]);
+    };
+    for (int t = 0; t < static_cast<int>(surface.triangles.size()); ++t)
+        for (int e = 0; e < 3; ++e) {
+            const int other = walk.behind(t, e);
+            if (other < 3 * t + e) // none, or seen from there
+                continue;
+            const Imath::V2d a0 = uv(t, e), a1 = uv(t, e + 1), b1 = uv(other / 3, other % 3), b0 = uv(other / 3, other % 3 + 1);
+            if (a0 == b0 && a1 == b1)
+                continue;
+            for (int i = 0; i < perEdge; ++i) {
+                const double s = (i + 0.5) / perEdge;
+                jumps.push_back(std::abs(readMap(map, a0 + (a1 - a0) * s) - readMap(map, b0 + (b1 - b0) * s)));
+            }
+        }
+    std::sort(jumps.begin(), jumps.end());
+    return jumps;
+}
+
+} // namespace patina::test
