@@ -82,6 +82,26 @@ void writeVectors(UsdWriter& out, const std::string& name, const std::vector<Ima
     });
 }
 
+// Each crease is a chain of one edge.
+void writeSharp(UsdWriter& out, const Mesh& mesh) {
+    const auto values = [&](const char* name, std::size_t count, auto value) {
+        out.array(name, count, [&](Out to, std::size_t i) { fmt::format_to(to, "{}", value(i)); });
+        out.blank();
+    };
+    if (!mesh.creases.empty()) {
+        values("int[] creaseIndices", 2 * mesh.creases.size(),
+               [&](std::size_t i) { return i % 2 ? mesh.creases[i / 2].b : mesh.creases[i / 2].a; });
+        values("int[] creaseLengths", mesh.creases.size(), [](std::size_t) { return 2; });
+        values("float[] creaseSharpnesses", mesh.creases.size(),
+               [&](std::size_t i) { return mesh.creases[i].sharpness; });
+    }
+    if (!mesh.corners.empty()) {
+        values("int[] cornerIndices", mesh.corners.size(), [&](std::size_t i) { return mesh.corners[i].vertex; });
+        values("float[] cornerSharpnesses", mesh.corners.size(),
+               [&](std::size_t i) { return mesh.corners[i].sharpness; });
+    }
+}
+
 void writeMesh(UsdWriter& out, const UsdScene& scene, const std::string& root) {
     const Mesh& mesh = *scene.mesh;
     const Imath::Box3f box = mesh.bounds();
@@ -102,6 +122,8 @@ void writeMesh(UsdWriter& out, const UsdScene& scene, const std::string& root) {
         out.line("token interpolateBoundary = \"edgeAndCorner\"");
         out.line("token faceVaryingLinearInterpolation = \"boundaries\"");
     }
+    if (scene.scheme != "none")
+        writeSharp(out, mesh);
     plain("int[] faceVertexCounts", mesh.faceSizes);
     plain("int[] faceVertexIndices", mesh.faceVertices);
     writeVectors(out, "point3f[] points", mesh.positions);

@@ -2,7 +2,7 @@
 // The result as a USD scene in text (.usda): mesh, material with the baked maps, volume.
 //
 //   /NAME                      Xform, component, the default prim
-//     /Surface                 Mesh: the control mesh, its subdivision scheme, UVs as primvars:st
+//     /Surface                 Mesh: the control mesh, its subdivision scheme, creases, UVs as primvars:st
 //     /Materials/Patina        UsdPreviewSurface and a MaterialX network (Standard Surface), both displaced
 //     /Volume                  Volume, invisible until asked for: one OpenVDBAsset per grid
 //

@@ -3,8 +3,11 @@
 // count, and lose their place at a "nan". Each function here walks a whole file, refuses what is broken, and gives the
 // same mesh in the plainest form of its format.
 
+#include "surface/mesh.h"
+
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace patina {
 
@@ -13,9 +16,12 @@ struct CheckedFile {
     bool binary = false;
     int vertexCount = 0; ///< for PLY, whose custom properties need their room beforehand
     int faceCount = 0;
+    std::vector<Crease> creases; ///< what the reader knows nothing of; vertices as the file counts them, from 0
+    std::vector<SharpCorner> corners;
 };
 
-/// Vertices, UVs and faces; indices counted from the start; a face's repeated vertices removed; no material files.
+/// Vertices, UVs, faces, creases and sharp corners; indices counted from the start; a face's repeated vertices removed;
+/// no material files.
 CheckedFile checkedObj(std::string_view bytes, const std::string& place);
 /// The header rewritten with type names that the reader knows, then the vertices, then the faces.
 CheckedFile checkedPly(std::string_view bytes, const std::string& place);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace patina {
@@ -28,6 +29,7 @@ class ObjChecker {
         while (!scanner_.atEnd())
             takeStatement(nextStatement());
         checkRanges();
+        checkSharp();
         writeFaces();
         out_.vertexCount = static_cast<int>(vertices_);
         out_.faceCount = faces_;
@@ -40,6 +42,12 @@ class ObjChecker {
         int number;
         std::size_t start;
         int size;
+    };
+
+    struct Sharp {
+        int line;
+        long long a, b; ///< the same: a corner
+        float sharpness;
     };
 
     [[noreturn]] void fail(int line, const std::string& message, const std::string& remedy = {}) const {
@@ -73,6 +81,46 @@ class ObjChecker {
             takeUv(words);
         else if (keyword == "f" || keyword == "fo")
             takeFace(words);
+        else if (keyword == "t")
+            takeTag(words);
+    }
+
+    /// "t crease 2/1/0 4 7 2.5", "t corner 1/1/0 4 10": OpenSubdiv's tags; so many whole numbers (vertices, counted
+    /// from 0), numbers and words follow. Of several edges or vertices each has a sharpness of its own, or all the
+    /// same. Other tags choose rules of subdivision, which are not the model's to choose here.
+    void takeTag(TextScanner& words) {
+        const std::string_view kind = words.word();
+        const int step = kind == "crease" ? 2 : kind == "corner" ? 1 : 0;
+        if (step == 0)
+            return;
+        const auto bad = [&] {
+            fail(statementLine_, fmt::format("this is no {}", kind),
+                 step == 2 ? "creases are written as t crease 2/1/0 VERTEX VERTEX SHARPNESS, vertices counted from 0"
+                           : "sharp corners are written as t corner 1/1/0 VERTEX SHARPNESS, vertices counted from 0");
+        };
+        const std::string_view counts = words.word();
+        const std::size_t slash = counts.find('/');
+        long long wholes = 0, numbers = 0;
+        if (slash == std::string_view::npos || !readInteger(counts.substr(0, slash), wholes) ||
+            !readInteger(counts.substr(slash + 1, counts.find('/', slash + 1) - slash - 1), numbers) || wholes < step ||
+            wholes % step != 0 || wholes > mostCorners || (numbers != 1 && numbers != wholes / step))
+            bad();
+        std::vector<long long> vertices(static_cast<std::size_t>(wholes));
+        for (long long& vertex : vertices)
+            if (!readInteger(words.word(), vertex) || vertex < 0)
+                bad();
+        float sharpness = 0.f;
+        for (long long i = 0; i < wholes / step; ++i) {
+            if (i < numbers) {
+                double value = 0.0;
+                if (!readNumber(words.word(), value) || !(value >= 0.0)) // false for NaN
+                    bad();
+                sharpness = static_cast<float>(std::min(value, 10.0));
+            }
+            if (step == 2 && vertices[2 * i] == vertices[2 * i + 1])
+                bad();
+            sharp_.push_back({statementLine_, vertices[step * i], vertices[step * i + step - 1], sharpness});
+        }
     }
 
     double number(std::string_view word, std::string_view what, long long which) const {
@@ -183,6 +231,34 @@ class ObjChecker {
             }
     }
 
+    /// Creases lie on edges, and corners on vertices, that there are.
+    void checkSharp() {
+        if (sharp_.empty())
+            return;
+        std::vector<std::pair<long long, long long>> edges;
+        for (const Face& face : faceList_)
+            for (int i = 0; i < face.size; ++i)
+                edges.push_back(std::minmax(corners_[face.start + i].vertex - 1,
+                                            corners_[face.start + (i + 1) % face.size].vertex - 1));
+        std::sort(edges.begin(), edges.end());
+        for (const Sharp& sharp : sharp_) {
+            if (std::max(sharp.a, sharp.b) >= vertices_)
+                fail(sharp.line, fmt::format("vertex {} is sharp, but there are {}, counted from 0",
+                                             std::max(sharp.a, sharp.b), vertices_));
+            const int a = static_cast<int>(sharp.a), b = static_cast<int>(sharp.b);
+            if (sharp.a == sharp.b) {
+                out_.corners.push_back({a, sharp.sharpness});
+                continue;
+            }
+            const std::pair<long long, long long> edge = std::minmax(sharp.a, sharp.b);
+            if (!std::binary_search(edges.begin(), edges.end(), edge))
+                fail(sharp.line,
+                     fmt::format("there is no edge between the vertices {} and {} (counted from 0)", sharp.a, sharp.b),
+                     "creases lie on edges of the faces");
+            out_.creases.push_back({a, b, sharp.sharpness});
+        }
+    }
+
     /// A vertex counts once in a face: OpenMesh drops repeated ones too, but not their UVs.
     void writeFaces() {
         std::vector<long long> seen(static_cast<std::size_t>(vertices_) + 1, -1);
@@ -221,6 +297,7 @@ class ObjChecker {
     std::string joined_;
     std::vector<Corner> corners_;
     std::vector<Face> faceList_;
+    std::vector<Sharp> sharp_;
     long long vertices_ = 0, uvs_ = 0, coloured_ = 0;
     int faces_ = 0, line_ = 0, statementLine_ = 0;
 };

@@ -2,6 +2,7 @@
 
 #include "surface/weld.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -200,6 +201,15 @@ void FaceListImporter::dropUnreferenced() {
         values.resize(kept);
     for (int& vertex : mesh_.faceVertices)
         vertex = moved[vertex];
+    for (Crease& crease : mesh_.creases) {
+        crease.a = moved[crease.a];
+        crease.b = moved[crease.b];
+    }
+    for (SharpCorner& corner : mesh_.corners)
+        corner.vertex = moved[corner.vertex];
+    mesh_.corners.erase(std::remove_if(mesh_.corners.begin(), mesh_.corners.end(),
+                                       [](const SharpCorner& corner) { return corner.vertex < 0; }),
+                        mesh_.corners.end());
 }
 
 void FaceListImporter::dropIncompleteAttributes() {

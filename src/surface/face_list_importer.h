@@ -6,6 +6,8 @@
 #include <OpenMesh/Core/IO/importer/BaseImporter.hh>
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace patina {
 
@@ -15,6 +17,12 @@ class FaceListImporter : public OpenMesh::IO::BaseImporter {
   public:
     /// Custom properties of PLY are stored by the reader in a kernel, which has to know its size beforehand.
     FaceListImporter(std::size_t vertexCount, std::size_t faceCount) : properties_(vertexCount, faceCount) {}
+
+    /// Creases and sharp corners, which OpenMesh's readers do not know; vertices in the order of add_vertex().
+    void setSharp(std::vector<Crease> creases, std::vector<SharpCorner> corners) {
+        mesh_.creases = std::move(creases);
+        mesh_.corners = std::move(corners);
+    }
 
     /// What was read. UVs only where every corner has one; attributes only where every referenced vertex has one.
     Mesh takeMesh();

@@ -65,6 +65,23 @@ std::unique_ptr<Far::TopologyRefiner> makeRefiner(const Mesh& mesh, SubdivisionS
         descriptor.fvarChannels = &channel;
     }
 
+    std::vector<int> creaseVertices, cornerVertices;
+    std::vector<float> creaseWeights, cornerWeights;
+    for (const Crease& crease : mesh.creases) {
+        creaseVertices.insert(creaseVertices.end(), {crease.a, crease.b});
+        creaseWeights.push_back(crease.sharpness);
+    }
+    for (const SharpCorner& corner : mesh.corners) {
+        cornerVertices.push_back(corner.vertex);
+        cornerWeights.push_back(corner.sharpness);
+    }
+    descriptor.numCreases = static_cast<int>(creaseWeights.size());
+    descriptor.creaseVertexIndexPairs = creaseVertices.data();
+    descriptor.creaseWeights = creaseWeights.data();
+    descriptor.numCorners = static_cast<int>(cornerWeights.size());
+    descriptor.cornerVertexIndices = cornerVertices.data();
+    descriptor.cornerWeights = cornerWeights.data();
+
     Sdc::Options rules;
     rules.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
     // UVs: charts keep their outline exactly (no bleeding over a seam, mirrored halves still meet) and are smoothed
@@ -138,6 +155,13 @@ int chooseLevel(const Mesh& mesh, double targetEdge, bool trianglesOnly) {
         return trianglesOnly ? static_cast<double>(mesh.faceSizes.size()) * std::ldexp(1.0, 2 * at)
                              : 2.0 * static_cast<double>(mesh.faceVertices.size()) * std::ldexp(1.0, 2 * (at - 1));
     };
+    // A crease that ends is itself only at the level where it does.
+    float lasting = 0.f;
+    for (const Crease& crease : mesh.creases)
+        lasting = std::max(lasting, crease.sharpness < 10.f ? crease.sharpness : 0.f);
+    for (const SharpCorner& corner : mesh.corners)
+        lasting = std::max(lasting, corner.sharpness < 10.f ? corner.sharpness : 0.f);
+    level = std::max(level, std::min(deepestLevel, static_cast<int>(std::ceil(lasting))));
     while (level > 1 && trianglesAt(level) > mostTriangles)
         --level;
     return level;

@@ -10,6 +10,19 @@
 
 namespace patina {
 
+/// An edge that subdivision keeps sharp, as OpenSubdiv and USD have it: 0 smooth, 10 and more for ever, between so many
+/// levels long.
+struct Crease {
+    int a = 0, b = 0; ///< the edge's vertices
+    float sharpness = 0.f;
+};
+
+/// A vertex that subdivision keeps sharp.
+struct SharpCorner {
+    int vertex = 0;
+    float sharpness = 0.f;
+};
+
 /// Polygons of any size over shared vertices. Face f's corners are
 /// `faceVertices[faceStart(f) … + faceSizes[f])`; UVs, where there are any, have an index per corner.
 struct Mesh {
@@ -20,6 +33,8 @@ struct Mesh {
     std::vector<Imath::V2f> uvs;
     std::vector<int> faceUvs; ///< parallel to faceVertices, or empty where the mesh has no UVs
     std::map<std::string, std::vector<float>> vertexAttributes; ///< one float per vertex
+    std::vector<Crease> creases;                                ///< of edges of the faces
+    std::vector<SharpCorner> corners;
 
     bool hasUvs() const { return !faceUvs.empty(); }
     std::size_t faceCount() const { return faceSizes.size(); }

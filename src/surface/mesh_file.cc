@@ -130,6 +130,7 @@ Mesh importMesh(Format format, CheckedFile checked) {
         good = OpenMesh::IO::OFFReader().read(stream, importer, options);
         break;
     }
+    importer.setSharp(std::move(checked.creases), std::move(checked.corners));
     return good ? importer.takeMesh() : Mesh{};
 }
 

@@ -89,6 +89,10 @@ bool joinVertices(Mesh& mesh) {
         return false;
     for (int& vertex : mesh.faceVertices)
         vertex = place[vertex];
+    for (Crease& crease : mesh.creases)
+        crease = {place[crease.a], place[crease.b], crease.sharpness};
+    for (SharpCorner& corner : mesh.corners)
+        corner.vertex = place[corner.vertex];
     return true;
 }
 
@@ -599,6 +603,8 @@ class Repair {
         mesh_.positions = std::move(old.positions);
         mesh_.uvs = std::move(old.uvs);
         mesh_.vertexAttributes = std::move(old.vertexAttributes);
+        mesh_.creases = std::move(old.creases);
+        mesh_.corners = std::move(old.corners);
         const bool hasUvs = old.hasUvs();
         for (std::size_t f = 0; f < keep.size(); ++f) {
             if (!keep[f])

@@ -111,7 +111,10 @@ struct SplitVertices {
 
 } // namespace
 
-void writeObj(const Mesh& mesh, const std::filesystem::path& path) {
+void writeObj(const Mesh& mesh, const std::filesystem::path& path, const std::vector<V3f>* normals) {
+    if (normals && normals->size() != mesh.positions.size())
+        throw RunError(path.string(),
+                       fmt::format("{} normals for {} vertices", normals->size(), mesh.positions.size()));
     fmt::memory_buffer text;
     const auto out = std::back_inserter(text);
     fmt::format_to(out, "# {} vertices, {} faces\n", mesh.positions.size(), mesh.faceSizes.size());
@@ -126,17 +129,26 @@ void writeObj(const Mesh& mesh, const std::filesystem::path& path) {
     }
     for (const V2f& uv : mesh.uvs)
         fmt::format_to(out, "vt {} {}\n", uv.x, uv.y);
+    if (normals)
+        for (const V3f& n : *normals)
+            fmt::format_to(out, "vn {} {} {}\n", n.x, n.y, n.z);
     std::size_t at = 0;
     for (const int size : mesh.faceSizes) {
         text.push_back('f');
         for (int corner = 0; corner < size; ++corner, ++at) {
+            const int vertex = mesh.faceVertices[at] + 1;
+            fmt::format_to(out, " {}", vertex);
             if (mesh.hasUvs())
-                fmt::format_to(out, " {}/{}", mesh.faceVertices[at] + 1, mesh.faceUvs[at] + 1);
-            else
-                fmt::format_to(out, " {}", mesh.faceVertices[at] + 1);
+                fmt::format_to(out, "/{}", mesh.faceUvs[at] + 1);
+            if (normals)
+                fmt::format_to(out, "{}/{}", mesh.hasUvs() ? "" : "/", vertex);
         }
         text.push_back('\n');
     }
+    for (const Crease& crease : mesh.creases)
+        fmt::format_to(out, "t crease 2/1/0 {} {} {}\n", crease.a, crease.b, crease.sharpness);
+    for (const SharpCorner& corner : mesh.corners)
+        fmt::format_to(out, "t corner 1/1/0 {} {}\n", corner.vertex, corner.sharpness);
     writeBytes(path, fmt::to_string(text));
 }
 

@@ -49,6 +49,20 @@ TEST_F(UsdFileTest, TheStageSaysUnitUpAxisAndDefaultPrim) {
     EXPECT_THAT(text, HasSubstr("def Xform \"marine\""));
 }
 
+TEST_F(UsdFileTest, MeshesKeepCreasesAndSharpCornersWhereTheyAreSubdivided) {
+    EXPECT_THAT(usdText(scene_), Not(HasSubstr("crease")));
+    mesh_.creases = {{1, 4, 2.5f}, {0, 1, 10.f}};
+    mesh_.corners = {{3, 4.f}};
+    const std::string text = usdText(scene_);
+    EXPECT_THAT(text, HasSubstr("int[] creaseIndices = [1, 4, 0, 1]\n"));
+    EXPECT_THAT(text, HasSubstr("int[] creaseLengths = [2, 2]\n"));
+    EXPECT_THAT(text, HasSubstr("float[] creaseSharpnesses = [2.5, 10]\n"));
+    EXPECT_THAT(text, HasSubstr("int[] cornerIndices = [3]\n"));
+    EXPECT_THAT(text, HasSubstr("float[] cornerSharpnesses = [4]\n"));
+    scene_.scheme = "none";
+    EXPECT_THAT(usdText(scene_), Not(HasSubstr("crease")));
+}
+
 TEST_F(UsdFileTest, MeshesKeepFacesSchemeAndUvsPerCorner) {
     const std::string text = usdText(scene_);
     EXPECT_THAT(text, HasSubstr("subdivisionScheme = \"catmullClark\""));
