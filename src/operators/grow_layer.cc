@@ -1,5 +1,6 @@
 #include "operators/grow_layer.h"
 
+#include "operators/coat.h"
 #include "operators/interface_foot.h"
 #include "operators/map_factors.h"
 #include "volume/band.h"
@@ -70,7 +71,7 @@ void keepFilms(Workpiece& work, const std::vector<std::uint16_t>& lowest, const 
 } // namespace
 
 OperationReport growLayer(Workpiece& work, const std::string& material, double thicknessUm, const ThicknessMap* map,
-                          Progress& progress) {
+                          Progress& progress, bool everywhere) {
     OperationReport report;
     LayerVolume& volume = work.volume;
     std::vector<int> candidates;
@@ -78,6 +79,8 @@ OperationReport growLayer(Workpiece& work, const std::string& material, double t
         if (volume.layers()[k - 1] == material)
             candidates.push_back(k);
     const double thickness = thicknessUm * volume.scale().unitsPerUm();
+    if (candidates.empty() && everywhere)
+        return coat(work, material, thicknessUm, map, progress);
     if (candidates.empty() || !(thickness > 0.0))
         return report;
     const double voxelSize = volume.scale().voxelSize;
@@ -119,7 +122,9 @@ OperationReport growLayer(Workpiece& work, const std::string& material, double t
                     Imath::V3d gradient;
                     const double phi = sampler.valueAndGradient(k, cell, gradient);
                     const double slope = gradient.length() / voxelSize;
-                    if (sampler.value(k - 1, cell) - phi <= nanometre * slope)
+                    // The first of them is remembered: that is where it begins anew if it is in none.
+                    const bool isThere = sampler.value(k - 1, cell) - phi > nanometre * slope;
+                    if (!isThere && !(everywhere && lowest[at] == 0))
                         continue;
                     const double t =
                         thickness * (map ? clampedFactor(*map, binding.surface(), foot.under, clamped[n]) : 1.0);
@@ -134,7 +139,8 @@ OperationReport growLayer(Workpiece& work, const std::string& material, double t
                     if (far)
                         places[at] = {Imath::V3f(foot.position + gradient.normalized() * (t / voxelSize)),
                                       static_cast<float>(slope)};
-                    break;
+                    if (isThere)
+                        break;
                 }
         });
     }

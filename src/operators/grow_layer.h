@@ -13,7 +13,11 @@ namespace patina {
 /// slope of phi_k and both are read at p, the closest point of that interface. What is above moves as it is, so that
 /// films buried there keep their thickness. Where the material lies in several layers, the lowest that is there (thicker
 /// than a nanometre) grows; where it does not lie, nothing happens.
+///
+/// `everywhere`: where it does not lie, it begins anew in its place in the stack, under what lies above its lowest
+/// layer; where the volume has no layer of it at all, it is laid on top as coat() does. So a mineral that the weather
+/// has worn off here and there comes again.
 OperationReport growLayer(Workpiece& work, const std::string& material, double thicknessUm, const ThicknessMap* map,
-                          Progress& progress);
+                          Progress& progress, bool everywhere = false);
 
 } // namespace patina

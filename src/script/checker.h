@@ -3,6 +3,7 @@
 
 #include "script/program.h"
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -35,7 +36,9 @@ struct CheckContext {
     std::set<std::string> functions = allFunctions(); ///< "texture", "noise", "accessibility", "exposure", …
     std::set<std::string> models = allGrowthModels(); ///< "ST", "RD", …
     std::set<std::string> growthArguments = allGrowthArguments(); ///< "cell", "arrival", …
-    std::set<std::string> clauses = allClauses(); ///< "by", "and", "above", "window", "of", "tangent-sphere", "global"
+    /// The model's up axis, where it is known: `north` must not lie along it.
+    std::optional<std::array<double, 3>> up;
+    std::set<std::string> clauses = allClauses(); ///< by, and, above, window, of, tangent-sphere, global, everywhere
     std::set<std::string> renderTargets = {"maps"};
 
     static std::set<std::string> allOperators();

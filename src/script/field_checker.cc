@@ -125,6 +125,14 @@ bool FieldChecker::argument(const std::string& name, const SyntaxExpression& val
             findings.error(value.offset, "the direction (0, 0, 0) is not north");
             return false;
         }
+        if (const auto& up = expressions_.context_.up) {
+            const Imath::V3d axis((*up)[0], (*up)[1], (*up)[2]);
+            if (axis.cross(*out.north).length() <= 1e-6 * axis.length() * out.north->length()) {
+                findings.error(value.offset, "north lies along the model's up axis",
+                               "give a direction that is level, or the model's axis by --up");
+                return false;
+            }
+        }
         return true;
     }
     if (name == "rays") {

@@ -80,7 +80,7 @@ class TreeReader {
         return node.is_type<rules::asClause>() || node.is_type<rules::byClause>() || node.is_type<rules::andClause>() ||
                node.is_type<rules::aboveClause>() || node.is_type<rules::windowClause>() ||
                node.is_type<rules::ofClause>() || node.is_type<rules::tangentClause>() ||
-               node.is_type<rules::globalClause>();
+               node.is_type<rules::globalClause>() || node.is_type<rules::everywhereClause>();
     }
 
     SyntaxClause clause(const Node& node) {

@@ -43,6 +43,7 @@ struct ofWord : keyword<TAO_PEGTL_STRING("of")> {};
 struct tangentWord : keyword<TAO_PEGTL_STRING("tangent")> {};
 struct tangentSphereWord : keyword<TAO_PEGTL_STRING("tangent-sphere")> {};
 struct globalWord : keyword<TAO_PEGTL_STRING("global")> {};
+struct everywhereWord : keyword<TAO_PEGTL_STRING("everywhere")> {};
 struct toWord : keyword<TAO_PEGTL_STRING("to")> {};
 struct fullWord : keyword<TAO_PEGTL_STRING("full")> {};
 struct smoothWord : keyword<TAO_PEGTL_STRING("smooth")> {};
@@ -53,7 +54,7 @@ struct areaWord : keyword<TAO_PEGTL_STRING("area")> {};
 struct statementWord : sor<newWord, openWord, coatWord, erodeWord, growWord, convertWord, fillWord, polishWord,
                            offsetWord, renderWord, letWord, paramWord, curveWord, seedWord, repeatWord> {};
 struct reserved : sor<statementWord, asWord, byWord, andWord, aboveWord, windowWord, ofWord, tangentWord, globalWord,
-                      toWord, fullWord> {};
+                      everywhereWord, toWord, fullWord> {};
 struct name : seq<not_at<reserved>, word> {};
 
 // A rule that must match: its message (below) is the error, at the place where it was tried.
@@ -161,8 +162,10 @@ struct windowClause : seq<windowWord, blanks, wantRadius, blanks> {};
 struct ofClause : seq<ofWord, blanks, wantMaterial, blanks> {};
 struct tangentClause : seq<at<tangentWord>, wantSphere, blanks, wantThickness, blanks> {};
 struct globalClause : seq<globalWord, blanks> {};
+struct everywhereClause : seq<everywhereWord, blanks> {};
 struct clauses
-    : star<sor<asClause, byClause, andClause, aboveClause, windowClause, ofClause, tangentClause, globalClause>> {};
+    : star<sor<asClause, byClause, andClause, aboveClause, windowClause, ofClause, tangentClause, globalClause,
+               everywhereClause>> {};
 
 struct newStatement : seq<newWord, blanks, wantMetal, blanks> {};
 struct openStatement : seq<openWord, blanks, wantFile, blanks> {};
@@ -265,7 +268,8 @@ using selector =
                                    rateName, stepDigits, totalDigits, growthShort, argumentName, argument, call, group,
                                    ofFull, sign, factor, productOperator, product, sumOperator, sum, material, declared,
                                    label, target, fileName, value, map, point, areaMark, smoothMark, asClause, byClause,
-                                   andClause, aboveClause, windowClause, ofClause, tangentClause, globalClause>>;
+                                   andClause, aboveClause, windowClause, ofClause, tangentClause, globalClause,
+                                   everywhereClause>>;
 
 } // namespace rules
 

@@ -23,6 +23,24 @@
 
 namespace patina {
 
+struct RunSession::Kept {
+    std::filesystem::path file; ///< empty until the volume is given back
+    const SurfaceMesh* surface = nullptr;
+    std::unique_ptr<LayerVolume> volume; ///< binding and maps point to it
+    std::unique_ptr<SurfaceBinding> binding;
+    std::unique_ptr<MapBuilder> maps;
+};
+
+RunSession::RunSession() = default;
+RunSession::~RunSession() = default;
+
+void RunSession::keep(const std::filesystem::path& file, LayerVolume volume) {
+    if (!kept)
+        return;
+    *kept->volume = std::move(volume);
+    kept->file = std::filesystem::weakly_canonical(file);
+}
+
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -55,6 +73,7 @@ class Run {
         if (volume_) {
             describe(*volume_);
             result_.volume = std::move(*volume_);
+            leaveToNext();
         }
         return std::move(result_);
     }
@@ -66,11 +85,22 @@ class Run {
         StatementReport report;
         report.text = statement.text;
         report.line = statement.place.line;
-        std::visit([&](const auto& action) { perform(action, report); }, statement.action);
+        // A step of a curve that does not rise changes nothing, and what was measured before holds.
+        if (!isNothing(statement)) {
+            std::visit([&](const auto& action) { perform(action, report); }, statement.action);
+            stack_.reset();
+        }
         report.seconds = secondsSince(start);
-        if (volume_ && volume_->layerCount() > 0)
-            report.stack = measureStack(*volume_, surface_).total;
+        if (!stack_ && volume_ && volume_->layerCount() > 0)
+            stack_ = measureStack(*volume_, surface_).total;
+        report.stack = stack_.value_or(LayerStatistics());
         result_.statements.push_back(std::move(report));
+    }
+
+    static bool isNothing(const Statement& statement) {
+        const auto isZero = [](const auto* action) { return action && action->thicknessUm == 0.0; };
+        return isZero(std::get_if<Coat>(&statement.action)) || isZero(std::get_if<Grow>(&statement.action)) ||
+               isZero(std::get_if<Erode>(&statement.action));
     }
 
     void perform(const NewMetal& action, StatementReport&) {
@@ -89,7 +119,35 @@ class Run {
         result_.voxelizeSeconds += secondsSince(start);
     }
 
+    void leaveToNext() {
+        if (!options_.session)
+            return;
+        options_.session->kept.reset();
+        if (result_.interrupted)
+            return;
+        options_.session->kept = std::make_unique<RunSession::Kept>();
+        RunSession::Kept& kept = *options_.session->kept;
+        kept.surface = &surface_;
+        kept.volume = std::move(volume_);
+        kept.binding = std::move(binding_);
+        kept.maps = std::move(maps_);
+    }
+
+    bool takeFromLast(const std::string& file) {
+        if (!options_.session || !options_.session->kept)
+            return false;
+        const auto kept = std::move(options_.session->kept);
+        if (kept->file.empty() || kept->surface != &surface_ || kept->file != std::filesystem::weakly_canonical(file))
+            return false;
+        volume_ = std::move(kept->volume);
+        binding_ = std::move(kept->binding);
+        maps_ = std::move(kept->maps);
+        return true;
+    }
+
     void perform(const OpenFile& action, StatementReport&) {
+        if (takeFromLast(action.file))
+            return;
         LayerVolume volume = readVolume(action.file);
         const std::string hash = surfaceHash(surface_);
         if (!volume.provenance.modelHash.empty() && volume.provenance.modelHash != hash)
@@ -136,7 +194,7 @@ class Run {
     void perform(const Grow& action, StatementReport& report) {
         const ThicknessMapPtr map = mapOf(action.map);
         Workpiece work{*volume_, *binding_};
-        report.operation = growLayer(work, action.material, action.thicknessUm, map.get(), progress_);
+        report.operation = growLayer(work, action.material, action.thicknessUm, map.get(), progress_, action.everywhere);
         report.growths = maps_->takeStatistics();
     }
 
@@ -243,6 +301,7 @@ class Run {
     std::unique_ptr<SurfaceBinding> binding_;
     std::unique_ptr<MapBuilder> maps_;
     RunResult result_;
+    std::optional<LayerStatistics> stack_; ///< of the volume as it is
 };
 
 // The growth of a coat's map that coatByVoxelGrowth() would take: the first of a product's factors.
@@ -318,7 +377,7 @@ void declareAbilities(CheckContext& context, const MaterialLibrary& materials) {
     context.functions = {"texture",  "vertices",      "noise",  "turbulence", "slope", "elevation", "facing",
                          "min",      "max",           "clamp",  "mix",        "pow",   "smoothstep",
                          "exposure", "accessibility", "wetness"};
-    context.clauses = {"by", "and", "above", "window", "of", "tangent-sphere", "global"};
+    context.clauses = {"by", "and", "above", "window", "of", "tangent-sphere", "global", "everywhere"};
 }
 
 RunResult runProgram(const Program& program, const SurfaceMesh& surface, const MaterialLibrary& materials,

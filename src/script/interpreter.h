@@ -13,11 +13,25 @@
 #include "volume/region_context.h"
 #include "volume/region_model.h"
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 
 namespace patina {
+
+/// What a run leaves to the next of a series, in which each opens the volume that the last has made of the same surface:
+/// the model's points bound to the band, growth lattices, patterns, fields. Saves time and changes no bit.
+struct RunSession {
+    RunSession();
+    ~RunSession();
+
+    /// Gives back the volume of the last run (its result's), which has been written to `file` and is not changed since.
+    void keep(const std::filesystem::path& file, LayerVolume volume);
+
+    struct Kept;
+    std::unique_ptr<Kept> kept; ///< the interpreter's
+};
 
 struct RunOptions {
     VolumeScale scale;            ///< of a `new` volume; `open` keeps the file's own
@@ -28,6 +42,7 @@ struct RunOptions {
     std::string modelName;
     const RegionModel* region = nullptr;    ///< of a close-up; the surface given to runProgram() is then its shown()
     const ContextFields* context = nullptr; ///< of a close-up: the whole model's fields
+    RunSession* session = nullptr;          ///< of a series; scale, up, seed and region must be those of its last run
 };
 
 /// What one statement did.

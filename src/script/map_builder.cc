@@ -1,6 +1,5 @@
 #include "script/map_builder.h"
 
-#include "operators/growth/grow.h"
 #include "operators/growth/growth_map.h"
 #include "operators/growth/nest_relief.h"
 #include "operators/maps/combined_map.h"
@@ -133,6 +132,9 @@ ThicknessMapPtr MapBuilder::ofField(const std::string& name,
 }
 
 ThicknessMapPtr MapBuilder::buildField(const Expression& e, Progress& progress) {
+    if (!(context_.up.length() > 0.0))
+        throw RunError(e.place.text(), fmt::format("'{}' asks where up is, and the model has no up axis", e.text),
+                       "give it by --up");
     if (e.text == "exposure" || e.text == "wetness") {
         const ExposureRequest request = e.exposure ? *e.exposure : ExposureRequest();
         return ofField(request.fieldName(e.text), [&](FieldStore& fields) {
@@ -298,24 +300,47 @@ MapBuilder::GrowthSetup MapBuilder::setUpGrowth(const GrowthCall& call, double c
     return {cells, std::move(options)};
 }
 
+std::shared_ptr<const GrowthPattern> MapBuilder::pattern(const GrowthLattice& cells, const GrowthOptions& options,
+                                                         const std::string& label, Progress& progress) {
+    const auto make = [&] {
+        return std::make_shared<const GrowthPattern>(grow(cells, options, context_.seed, label, &progress));
+    };
+    // What maps steer depends on more than its options; and large lattices are not worth their memory.
+    constexpr std::size_t mostCells = 4'000'000, mostPatterns = 12;
+    if (!options.arrival.empty() || !options.blocked.empty() || cells.size() > mostCells)
+        return make();
+    const std::string key = fmt::format(
+        "{} {} {:a} {:a} {} {} {} {:a} {:a} {:a} {} {}", int(options.model), int(options.rate), options.step,
+        options.total, options.ofFull, options.reach, options.patch, options.seeding, options.blockedFraction,
+        options.pointSpacing, static_cast<const void*>(&cells), label);
+    for (const auto& [name, kept] : recent_)
+        if (name == key)
+            return kept;
+    recent_.emplace_back(key, make());
+    if (recent_.size() > mostPatterns)
+        recent_.pop_front();
+    return recent_.back().second;
+}
+
 ThicknessMapPtr MapBuilder::buildGrowth(const GrowthCall& call, Progress& progress) {
     const double byDefault = context_.longestSide / cellsPerLongestSide;
     const auto [cells, options] = setUpGrowth(call, cellOf(call, byDefault), progress);
-    GrowthPattern pattern = grow(cells, options, context_.seed, call.label, &progress);
-    statistics_.push_back(pattern.statistics);
+    const auto now = pattern(cells, options, call.label, progress);
+    statistics_.push_back(now->statistics);
+    std::vector<float> factor = now->factor;
     if (call.since > 0) {
         // One history: the earlier step is part of the later one, and no cell has fallen since.
         GrowthOptions earlier = options;
         earlier.step = call.since;
-        const GrowthPattern before = grow(cells, earlier, context_.seed, call.label, &progress);
-        std::transform(pattern.factor.begin(), pattern.factor.end(), before.factor.begin(), pattern.factor.begin(),
-                       [](float now, float then) { return std::max(0.f, now - then); });
+        const auto before = pattern(cells, earlier, call.label, progress);
+        std::transform(factor.begin(), factor.end(), before->factor.begin(), factor.begin(),
+                       [](float here, float then) { return std::max(0.f, here - then); });
     }
     // Grains nobody chose are no finer than a preview shows them: it and the final have one look. What the script
     // gave is shown as finely as voxels can.
     const double grain = call.cellUm ? cells.cell : grainCells * cells.cell;
     const double shift = 0.25 * cells.cell * std::clamp(2.0 * context_.voxelSize / grain - 1.0, 0.0, 1.0);
-    return std::make_shared<GrowthMap>(cells, pattern.factor, readingWidth(grain, context_.voxelSize), shift);
+    return std::make_shared<GrowthMap>(cells, factor, readingWidth(grain, context_.voxelSize), shift);
 }
 
 std::optional<MapBuilder::CoatGrowth> MapBuilder::buildVoxelGrowth(const Expression& expression, double thicknessUm,

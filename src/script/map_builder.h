@@ -3,6 +3,7 @@
 
 #include "base/progress.h"
 #include "operators/fields/field_store.h"
+#include "operators/growth/grow.h"
 #include "operators/growth/growth_lattice.h"
 #include "operators/growth/growth_statistics.h"
 #include "operators/growth/voxel_growth.h"
@@ -13,6 +14,7 @@
 #include "volume/region_model.h"
 #include "volume/surface_binding.h"
 
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -66,6 +68,9 @@ class MapBuilder {
     GrowthSetup setUpGrowth(const GrowthCall& call, double cell, Progress& progress);
     double cellOf(const GrowthCall& call, double byDefault) const;
     ThicknessMapPtr buildGrowth(const GrowthCall& call, Progress& progress);
+    /// grow(), or what it made for a map shortly before: frames of a series ask for the last one's step again.
+    std::shared_ptr<const GrowthPattern> pattern(const GrowthLattice& cells, const GrowthOptions& options,
+                                                 const std::string& label, Progress& progress);
     ThicknessMapPtr buildCall(const Expression& expression, Progress& progress);
     ThicknessMapPtr buildField(const Expression& expression, Progress& progress);
     FieldStore& fieldStore();
@@ -88,6 +93,7 @@ class MapBuilder {
     const SurfaceMesh* cellSurface_ = nullptr;                            ///< while maps are built for cells of a piece
     std::vector<GrowthStatistics> statistics_;
     std::unique_ptr<FieldStore> fields_;
+    std::deque<std::pair<std::string, std::shared_ptr<const GrowthPattern>>> recent_; ///< newest last
 };
 
 } // namespace patina

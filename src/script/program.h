@@ -107,11 +107,12 @@ struct Erode {
     bool andMetal = false;
 };
 
-/// `grow M t MAP;`
+/// `grow M t MAP everywhere;`
 struct Grow {
     std::string material;
     double thicknessUm = 0.0;
     std::optional<Expression> map;
+    bool everywhere = false; ///< also where M is not
 };
 
 /// `convert A to B fraction MAP;`

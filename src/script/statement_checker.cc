@@ -14,8 +14,10 @@ namespace {
 
 /// Words that may stand behind each operator's own.
 std::vector<std::string> fittingClauses(const std::string& word) {
-    if (word == "coat" || word == "grow" || word == "convert")
+    if (word == "coat" || word == "convert")
         return {"as"};
+    if (word == "grow")
+        return {"as", "everywhere"};
     if (word == "erode")
         return {"as", "by", "and"};
     if (word == "fill")
@@ -224,7 +226,10 @@ std::optional<Statement::Action> StatementChecker::grow(const SyntaxStatement& s
     Grow out;
     out.material = syntax.names.at(0).text;
     const bool known = material(syntax.names[0], Expected::layer);
-    if (known)
+    out.everywhere = clauseOf(syntax, "everywhere") != nullptr;
+    if (out.everywhere)
+        present_.insert(out.material);
+    else if (known)
         warnWhereAbsent(syntax.names[0]);
     const auto thickness = expressions_.lengthNotNegative(syntax.values.at(0), "the thickness");
     if (!mapInto(syntax, out.map) || !known || !thickness)

@@ -47,7 +47,7 @@ struct SyntaxExpression {
 
 /// `as NAME`, `by hardness`, `above smooth(2mm)`, …
 struct SyntaxClause {
-    std::string word; ///< "as", "by", "and", "above", "window", "of", "tangent-sphere" or "global"
+    std::string word; ///< "as", "by", "and", "above", "window", "of", "tangent-sphere", "global" or "everywhere"
     std::size_t offset = 0;
     std::vector<SyntaxWord> names;
     std::vector<SyntaxExpression> values;

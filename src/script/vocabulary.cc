@@ -14,7 +14,8 @@ const std::vector<std::string>& statementWords() {
 }
 
 const std::vector<std::string>& clauseWords() {
-    static const std::vector<std::string> words = {"as", "by", "and", "above", "window", "of", "tangent", "global"};
+    static const std::vector<std::string> words = {"as", "by",      "and",    "above",     "window",
+                                                   "of", "tangent", "global", "everywhere"};
     return words;
 }
 
@@ -24,7 +25,7 @@ std::vector<std::string> operatorWords() {
 }
 
 std::vector<std::string> optionalClauses() {
-    return {"by", "and", "above", "window", "of", "tangent-sphere", "global"};
+    return {"by", "and", "above", "window", "of", "tangent-sphere", "global", "everywhere"};
 }
 
 const std::vector<std::string>& fieldNames() {

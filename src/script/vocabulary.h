@@ -16,7 +16,8 @@ const std::vector<std::string>& clauseWords();
 const std::vector<std::string>& fieldNames();
 /// Statements that do something to the object or with it ("new" … "render").
 std::vector<std::string> operatorWords();
-/// Clauses that a build may or may not implement ("by", "and", "above", "window", "of", "tangent-sphere", "global").
+/// Clauses that a build may or may not implement ("by", "and", "above", "window", "of", "tangent-sphere", "global",
+/// "everywhere").
 std::vector<std::string> optionalClauses();
 const std::vector<std::string>& functionNames();
 const std::vector<std::string>& growthModels();

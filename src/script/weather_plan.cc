@@ -96,21 +96,23 @@ class PlanReader {
 };
 
 void readLayers(PlanReader& file, WeatherPlan& plan) {
-    file.each("oxide", {"material", "thickness_um", "years", "pattern", "total", "even", "map"},
+    file.each("oxide", {"material", "thickness_um", "years", "expansion", "pattern", "total", "even", "map"},
               [&](const toml::table& table) {
                   WeatherOxide oxide;
                   oxide.material = file.neededWord(table, "material");
                   oxide.thicknessUm = file.needed(table, "thickness_um", 0.0, 1e4);
                   oxide.years = file.needed(table, "years", 1e-3, 1e4);
+                  oxide.expansion = file.reader().number(table, "expansion", 0.1, 100.0).value_or(0.0);
                   oxide.pattern = file.pattern(table);
                   plan.oxides.push_back(oxide);
               });
-    file.each("mineral", {"material", "begins", "share", "pattern", "total", "even", "map"},
+    file.each("mineral", {"material", "begins", "share", "expansion", "pattern", "total", "even", "map"},
               [&](const toml::table& table) {
                   WeatherMineral mineral;
                   mineral.material = file.neededWord(table, "material");
                   mineral.begins = file.range(table, "begins", 1e4);
                   mineral.share = file.reader().number(table, "share", 0.0, 1.0).value_or(1.0);
+                  mineral.expansion = file.reader().number(table, "expansion", 0.1, 100.0).value_or(0.0);
                   mineral.pattern = file.pattern(table);
                   plan.minerals.push_back(mineral);
               });
@@ -144,7 +146,7 @@ void readEvents(PlanReader& file, WeatherPlan& plan) {
 }
 
 void readKinetics(const fs::path& path, const std::string& metal, const std::string& asked, WeatherPlan& plan,
-                  std::vector<Diagnostic>& findings) {
+                  std::map<std::string, double>& expansions, std::vector<Diagnostic>& findings) {
     PlanReader file(path, findings);
     const toml::node* node = file.table().get(metal);
     const toml::table* table = node ? node->as_table() : nullptr;
@@ -158,6 +160,37 @@ void readKinetics(const fs::path& path, const std::string& metal, const std::str
         for (const auto& entry : *years)
             plan.firstYearUm[std::string(entry.first.str())] =
                 file.range(*years, std::string(entry.first.str()).c_str(), 1e5);
+    if (table->get("expansion"))
+        if (const toml::table* minerals = file.reader().subtable(*table, "expansion"))
+            for (const auto& entry : *minerals) {
+                const std::string mineral(entry.first.str());
+                expansions[mineral] = file.needed(*minerals, mineral.c_str(), 0.1, 100.0);
+            }
+}
+
+// Of a mineral of the table, or of a mixture of them; nothing where neither is known. The material's file is read by
+// the library as well, which tells its faults.
+std::optional<double> expansionOf(const fs::path& materials, const std::string& name,
+                                  const std::map<std::string, double>& minerals) {
+    if (const auto mineral = minerals.find(name); mineral != minerals.end())
+        return mineral->second;
+    const fs::path file = materials / (name + ".toml");
+    if (!fs::exists(file))
+        return std::nullopt;
+    double metal = 0.0; // thickness of metal in one of the mixture
+    try {
+        const toml::table table = toml::parse(readTextFile(file.string()));
+        if (const toml::array* parts = table["mixture"]["parts"].as_array())
+            for (const toml::node& part : *parts)
+                if (const toml::table* one = part.as_table()) {
+                    const auto mineral = minerals.find((*one)["material"].value_or(std::string()));
+                    if (mineral != minerals.end())
+                        metal += (*one)["volume"].value_or(0.0) / mineral->second;
+                }
+    } catch (const toml::parse_error&) {
+        return std::nullopt;
+    }
+    return metal > 0.0 ? std::optional<double>(1.0 / metal) : std::nullopt;
 }
 
 } // namespace
@@ -186,13 +219,23 @@ WeatherPlan readWeatherPlan(const fs::path& dataFolder, const std::string& envir
                                            "oxide", "mineral", "conversion", "wear", "deposit"});
     plan.title = file.neededWord(file.table(), "title");
     plan.metal = file.neededWord(file.table(), "metal");
-    plan.paperUmPerYear = file.reader().number(file.table(), "paper_um_per_year", 0.0, 1e4);
+    if (const toml::node* rate = file.table().get("paper_um_per_year"); rate && rate->is_array())
+        plan.paperUmPerYear = file.range(file.table(), "paper_um_per_year", 1e4);
+    else if (const auto number = file.reader().number(file.table(), "paper_um_per_year", 0.0, 1e4))
+        plan.paperUmPerYear = std::make_pair(*number, *number);
     plan.expansion = file.needed(file.table(), "expansion", 0.1, 100.0);
     plan.retained = file.needed(file.table(), "retained", 0.0, 1.0);
     readLayers(file, plan);
     readEvents(file, plan);
+    std::map<std::string, double> expansions;
     readKinetics(dataFolder / "weather" / "kinetics.toml", file.neededWord(file.table(), "kinetics"), name + ".toml",
-                 plan, findings);
+                 plan, expansions, findings);
+    const auto complete = [&](auto& layer) {
+        if (layer.expansion == 0.0)
+            layer.expansion = expansionOf(dataFolder / "materials", layer.material, expansions).value_or(plan.expansion);
+    };
+    std::for_each(plan.oxides.begin(), plan.oxides.end(), complete);
+    std::for_each(plan.minerals.begin(), plan.minerals.end(), complete);
     if (!findings.empty())
         throw ScriptError(findings);
     return plan;
@@ -216,6 +259,10 @@ void setLatitude(WeatherPlan& plan, double degrees) {
         set(deposit.pattern.map);
 }
 
+bool hasPaperRange(const WeatherPlan& plan) {
+    return plan.paperUmPerYear && plan.paperUmPerYear->second > plan.paperUmPerYear->first;
+}
+
 double patinaThicknessUm(const WeatherPlan& plan, const WeatherKinetics& kinetics, double years) {
     if (years <= 0.0)
         return 0.0;
@@ -223,8 +270,9 @@ double patinaThicknessUm(const WeatherPlan& plan, const WeatherKinetics& kinetic
         if (!plan.paperUmPerYear)
             throw Error(ExitCode::commandLine, "--category", fmt::format("the paper has no rate for {}", plan.metal),
                         "give a corrosivity category of ISO 9223, C1 to CX, as in --category C3");
+        const auto [least, most] = *plan.paperUmPerYear;
         const double x = std::min(years / paperYears, 1.0);
-        return paperYears * *plan.paperUmPerYear * x * (2.0 - x);
+        return paperYears * (least + (most - least) * kinetics.position) * x * (2.0 - x);
     }
     const auto rate = plan.firstYearUm.find(kinetics.category);
     if (rate == plan.firstYearUm.end()) {
@@ -246,13 +294,16 @@ double patinaThicknessUm(const WeatherPlan& plan, const WeatherKinetics& kinetic
 }
 
 std::vector<double> layerThicknessesUm(const WeatherPlan& plan, const WeatherKinetics& kinetics, double years) {
+    // Amounts are shared out as metal where a loss of metal is known, else as thickness.
+    const bool byMetal = !kinetics.category.empty();
+    const double unit = byMetal ? plan.expansion : 1.0;
     const auto oxidesAt = [&](double at, std::vector<double>* each) {
         double sum = 0.0;
         for (std::size_t i = 0; i < plan.oxides.size(); ++i) {
             const double t = plan.oxides[i].thicknessUm * (1.0 - std::exp(-at / plan.oxides[i].years));
             if (each)
                 (*each)[i] = t;
-            sum += t;
+            sum += byMetal ? t / plan.oxides[i].expansion : t;
         }
         return sum;
     };
@@ -272,18 +323,52 @@ std::vector<double> layerThicknessesUm(const WeatherPlan& plan, const WeatherKin
     const int steps = static_cast<int>(std::ceil(years / step - 1e-9));
     for (int i = 1; i <= steps; ++i) {
         const double now = std::min(years, i * step);
-        const double allowed = patinaThicknessUm(plan, kinetics, now) - oxidesAt(now, nullptr);
+        const double allowed = patinaThicknessUm(plan, kinetics, now) / unit - oxidesAt(now, nullptr);
         const double mineral = std::max(before, begun(plan.minerals[0], now) * allowed);
         double left = mineral - before;
         for (std::size_t m = plan.minerals.size(); m-- > 1;) {
             const double part = left * plan.minerals[m].share * begun(plan.minerals[m], now);
-            thickness[plan.oxides.size() + m] += part;
+            thickness[plan.oxides.size() + m] += part * (byMetal ? plan.minerals[m].expansion : 1.0);
             left -= part;
         }
-        thickness[plan.oxides.size()] += left;
+        thickness[plan.oxides.size()] += left * (byMetal ? plan.minerals[0].expansion : 1.0);
         before = mineral;
     }
     return thickness;
+}
+
+double convertedFraction(const WeatherPlan& plan, const WeatherKinetics& kinetics, const WeatherConversion& conversion,
+                         double since, double year) {
+    const auto grownBy = [&](double at) {
+        const std::vector<double> thickness = layerThicknessesUm(plan, kinetics, at);
+        double sum = 0.0;
+        for (std::size_t i = 0; i < thickness.size(); ++i) {
+            const std::string& material = i < plan.oxides.size() ? plan.oxides[i].material
+                                                                  : plan.minerals[i - plan.oxides.size()].material;
+            if (material == conversion.from)
+                sum += thickness[i];
+        }
+        return sum;
+    };
+    // What is left in a year of all that has grown until then; steps of a quarter of a year from year 0, whatever the
+    // frames are, each µm counted from the middle of its step.
+    const auto leftIn = [&](double at) {
+        constexpr double step = 0.25;
+        const int steps = static_cast<int>(std::ceil(at / step - 1e-9));
+        double left = 0.0, before = 0.0;
+        for (int i = 1; i <= steps; ++i) {
+            const double now = std::min(at, i * step);
+            const double grown = grownBy(now);
+            const double passed = at - std::max(0.5 * (now + (i - 1) * step), conversion.begins);
+            left += (grown - before) * std::exp2(-std::max(0.0, passed) / conversion.halfLifeYears);
+            before = grown;
+        }
+        return left;
+    };
+    if (year <= conversion.begins)
+        return 0.0;
+    const double stock = leftIn(since) + grownBy(year) - grownBy(since);
+    return stock > 0.0 ? std::clamp(1.0 - leftIn(year) / stock, 0.0, 1.0) : 0.0;
 }
 
 } // namespace patina

@@ -25,6 +25,7 @@ struct WeatherOxide {
     double thicknessUm = 0.0;
     double years = 1.0;
     WeatherPattern pattern;
+    double expansion = 1.0; ///< of this material (see WeatherPlan::expansion)
 };
 
 /// Minerals share what the kinetics leave after the oxides. The first one is there on the first places after
@@ -35,6 +36,7 @@ struct WeatherMineral {
     std::pair<double, double> begins{0.0, 1.0};
     double share = 1.0;
     WeatherPattern pattern;
+    double expansion = 1.0; ///< of this material (see WeatherPlan::expansion)
 };
 
 /// One mineral turns into another, half of it in `halfLifeYears`.
@@ -62,8 +64,11 @@ struct WeatherDeposit {
 struct WeatherPlan {
     std::string title;
     std::string metal;
-    std::optional<double> paperUmPerYear; ///< mean growth of the patina over the first 20 years (the paper's rate)
-    double expansion = 1.0;               ///< thickness of mineral per thickness of metal lost
+    /// Mean growth of the patina over the first 20 years (the paper's rate): least and most, often the same.
+    std::optional<std::pair<double, double>> paperUmPerYear;
+    /// Thickness of mineral per thickness of metal lost, of materials of which nothing better is known. Of a mixture it
+    /// is 1 / sum (v / e) over the minerals' shares of its volume; parts without metal, such as binder, count as room.
+    double expansion = 1.0;
     double retained = 1.0;                ///< share of it that is not washed away
     double exponent = 1.0;                ///< b of D = r t^b
     /// First year's loss of metal by category, µm: least and most.
@@ -75,7 +80,7 @@ struct WeatherPlan {
     std::vector<WeatherDeposit> deposits;
 };
 
-/// Reads data/weather/METAL_ENVIRONMENT.toml and kinetics.toml.
+/// Reads data/weather/METAL_ENVIRONMENT.toml and kinetics.toml, and what the layers are mixed of from data/materials.
 /// \throws Error (command line) where there is none for the two; ScriptError with every fault of the files
 WeatherPlan readWeatherPlan(const std::filesystem::path& dataFolder, const std::string& environment,
                             const std::string& metal);
@@ -90,15 +95,25 @@ void setLatitude(WeatherPlan& plan, double degrees);
 /// How much patina there is after some years.
 struct WeatherKinetics {
     std::string category;  ///< C1 … CX of ISO 9223; empty: the paper's rate
-    double position = 0.5; ///< within the category's range: 0 its least, 1 its most; between them geometrically
+    double position = 0.5; ///< within the range: 0 its least, 1 its most; of a category geometrically between them
 };
 
-/// Mean thickness of the whole patina, µm. The paper's rate r: 20 r (2x - x²), x = years / 20, at most 1: fastest at
+/// Whether the plan's paper rate is a range, of which least and most can be asked.
+bool hasPaperRange(const WeatherPlan& plan);
+
+/// Mean thickness of the whole patina, µm, if all of it took the plan's expansion. The paper's rate r: 20 r (2x - x²), x = years / 20, at most 1: fastest at
 /// first, nothing after 20 years. ISO 9224: expansion · retained · r years^b, along the tangent after 20 years.
 /// \throws Error (command line) for a category without a rate
 double patinaThicknessUm(const WeatherPlan& plan, const WeatherKinetics& kinetics, double years);
 
-/// The same, shared out: first the oxides, then the minerals, in the plan's order. Never falls with the years.
+/// The same, shared out: first the oxides, then the minerals, in the plan's order. Never falls with the years. The
+/// paper's rate is a thickness, so the layers add up to it; a category's loss is metal, of which each layer holds its
+/// thickness over its own expansion, together expansion⁻¹ patinaThicknessUm().
 std::vector<double> layerThicknessesUm(const WeatherPlan& plan, const WeatherKinetics& kinetics, double years);
+
+/// The fraction of what there is of conversion.from that turns in the years since .. year: half of every µm in a half-life
+/// from when it grew (or from conversion.begins), so that many short frames and one long one leave the same.
+double convertedFraction(const WeatherPlan& plan, const WeatherKinetics& kinetics, const WeatherConversion& conversion,
+                         double since, double year);
 
 } // namespace patina

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace patina {
 
@@ -55,44 +57,57 @@ class GrowingLayer {
     }
 
     const std::string& material() const { return material_; }
-    bool present() const { return step_ > 0 || evenUm_ > 0.0; }
+    bool present() const { return patternUm_ > 0.0 || evenUm_ > 0.0; }
 
     // The statement that brings the mean thickness to `um`; empty where nothing is to be done.
+    //
+    // The even part is a fixed share and the step of the pattern a function of `um` alone, so that neither depends on
+    // the frames that lie between; the pattern's amount makes the mean exact. A step is begun with the first of its
+    // growth and thickens until it is full.
     std::string growTo(double um, const std::string& word) {
-        // The pattern takes its part as far as whole steps go; the even part makes up for the rest, so that the mean is
-        // exact and neither ever falls.
-        const double forPattern = std::min((1.0 - pattern_.even) * um, um - evenUm_);
-        int step = step_;
-        while (step < pattern_.total && amplitude_ * means_.at(step + 1) <= forPattern + 1e-9)
-            ++step;
-        const double even = std::max(evenUm_, um - amplitude_ * means_.at(step));
-        const double more = even - evenUm_;
-        std::string statement;
-        if (step > step_ && amplitude_ > leastUm) {
-            const double most = more + amplitude_;
-            std::string texture = fmt::format("texture({}(rate=linear, step={}, {}total={}) of full)", pattern_.model,
-                                              step, step_ > 0 ? fmt::format("since={}, ", step_) : "", pattern_.total);
-            if (more > leastUm)
-                texture = fmt::format("mix({:.4g}, 1, {})", more / most, texture);
-            statement = fmt::format("{} {} {:.4g} {}{}", word, material_, most, texture,
-                                    pattern_.map.empty() ? "" : " * " + pattern_.map);
-        } else if (more > leastUm) {
-            statement =
-                fmt::format("{} {} {:.4g}{}", word, material_, more, pattern_.map.empty() ? "" : " " + pattern_.map);
-        } else {
+        const double more = um - evenUm_ - patternUm_;
+        if (!(more > leastUm))
             return {};
+        const bool isPatterned = amplitude_ > leastUm;
+        double even = isPatterned ? std::clamp(pattern_.even * um - evenUm_, 0.0, more) : more;
+        if (even <= leastUm)
+            even = 0.0;
+        else if (more - even <= leastUm)
+            even = more;
+        double most = even;
+        std::string map;
+        if (even < more) {
+            const bool isFull = patternUm_ > amplitude_ * means_.at(pattern_.total) - leastUm;
+            const int step = std::max(step_, stepFor((1.0 - pattern_.even) * um));
+            const int since = isFull ? 0 : step > step_ ? step_ : step - 1;
+            most += (more - even) / (means_.at(step) - means_.at(since));
+            map = fmt::format("texture({}(rate=linear, step={}, {}total={}) of full)", pattern_.model, step,
+                              since > 0 ? fmt::format("since={}, ", since) : "", pattern_.total);
+            if (even > 0.0)
+                map = fmt::format("mix({:.4g}, 1, {})", even / most, map);
+            patternUm_ += more - even;
+            step_ = step;
         }
-        step_ = step;
-        evenUm_ = even;
-        return statement + fmt::format(" as {};", material_);
+        evenUm_ += even;
+        if (!pattern_.map.empty())
+            map += (map.empty() ? "" : " * ") + pattern_.map;
+        return fmt::format("{} {} {:.4g}{}{} as {};", word, material_, most, map.empty() ? "" : " ", map, material_);
     }
 
   private:
+    // The first step whose pattern is `um` thick.
+    int stepFor(double um) const {
+        int step = 1;
+        while (step < pattern_.total && amplitude_ * means_.at(step) < um - 1e-9)
+            ++step;
+        return step;
+    }
+
     std::string material_;
     WeatherPattern pattern_;
     PatternMeans means_;
     double amplitude_ = 0.0; // µm at factor 1
-    double evenUm_ = 0.0;
+    double evenUm_ = 0.0, patternUm_ = 0.0;
     int step_ = 0;
 };
 
@@ -110,13 +125,15 @@ std::string folderOf(double year) {
 }
 
 std::string amountText(const WeatherPlan& plan, const WeatherKinetics& kinetics, double year) {
-    const double um = patinaThicknessUm(plan, kinetics, year);
+    const std::vector<double> layers = layerThicknessesUm(plan, kinetics, year);
+    const double um = std::accumulate(layers.begin(), layers.end(), 0.0);
     if (kinetics.category.empty())
         return fmt::format("{:.3g} um, at the paper's rate of {:g} um a year, which ends after 20 years", um,
-                           *plan.paperUmPerYear);
-    return fmt::format("{:.3g} um, by ISO 9223 category {} (at {:.0f} % of its range) and ISO 9224, {:g} um of mineral "
-                       "for 1 um of {}, {:.0f} % of it not washed away",
-                       um, kinetics.category, 100.0 * kinetics.position, plan.expansion, plan.metal,
+                           patinaThicknessUm(plan, kinetics, 20.0) / 20.0);
+    return fmt::format("{:.3g} um, by ISO 9223 category {} (at {:.0f} % of its range) and ISO 9224, which let {:.3g} um "
+                       "of {} corrode: {:.0f} % of it is not washed away and swells into minerals",
+                       um, kinetics.category, 100.0 * kinetics.position,
+                       patinaThicknessUm(plan, kinetics, year) / (plan.expansion * plan.retained), plan.metal,
                        100.0 * plan.retained);
 }
 
@@ -154,32 +171,45 @@ std::vector<WeatherFrame> weatherScripts(const WeatherPlan& plan, const WeatherK
 
         const std::vector<double> thickness = layerThicknessesUm(plan, kinetics, year);
         for (std::size_t i = 0; i < layers.size(); ++i) {
-            const std::string statement = layers[i].growTo(thickness[i], layers[i].present() ? "grow" : "coat");
+            const bool present = layers[i].present();
+            std::string statement = layers[i].growTo(thickness[i], present ? "grow" : "coat");
+            // What rain has worn off here and there comes again.
+            if (present && !statement.empty())
+                statement.insert(statement.rfind(" as "), " everywhere");
             if (!statement.empty())
                 text += statement + "\n";
         }
         for (const WeatherConversion& conversion : plan.conversions) {
-            const double passed = year - std::max(since, conversion.begins);
             const auto isPresent = [&](const GrowingLayer& layer) {
                 return layer.material() == conversion.from && layer.present();
             };
-            if (passed > 0.0 && std::any_of(layers.begin(), layers.end(), isPresent))
-                text += fmt::format("convert {} to {} {:.4g};\n", conversion.from, conversion.to,
-                                    1.0 - std::exp2(-passed / conversion.halfLifeYears));
+            if (std::none_of(layers.begin(), layers.end(), isPresent))
+                continue;
+            const double fraction = convertedFraction(plan, kinetics, conversion, since, year);
+            if (fraction > 1e-4)
+                text += fmt::format("convert {} to {} {:.4g};\n", conversion.from, conversion.to, fraction);
         }
-        for (const WeatherWear& wear : plan.wear) {
-            const double passed = year - std::max(since, wear.begins);
-            if (passed > 0.0)
-                text += fmt::format("erode {:.4g}{} by hardness;\n", wear.umPerYear * passed,
-                                    wear.map.empty() ? "" : " " + wear.map);
-        }
+        // What settles lies on top, also where minerals have grown over earlier dirt, and is worn off first. So wear of
+        // the years before anything settled comes before it, and the rest behind it, as in many short frames.
+        double settles = std::numeric_limits<double>::infinity();
+        for (const WeatherDeposit& deposit : plan.deposits)
+            settles = std::min(settles, deposit.begins);
+        const auto wearOff = [&](double from, double to) {
+            for (const WeatherWear& wear : plan.wear) {
+                const double passed = to - std::max(from, wear.begins);
+                if (passed > 0.0)
+                    text += fmt::format("erode {:.4g}{} by hardness;\n", wear.umPerYear * passed,
+                                        wear.map.empty() ? "" : " " + wear.map);
+            }
+        };
+        wearOff(since, std::min(year, settles));
         for (std::size_t i = 0; i < deposits.size(); ++i) {
             const double um = plan.deposits[i].umPerYear * std::max(0.0, year - plan.deposits[i].begins);
-            // What settles lies on top, also where minerals have grown over earlier dirt.
             const std::string statement = deposits[i].growTo(um, "coat");
             if (!statement.empty())
                 text += statement + "\n";
         }
+        wearOff(std::max(since, settles), year);
         text += "render maps;\n";
         frame.script = std::move(text);
         frames.push_back(std::move(frame));

@@ -41,6 +41,22 @@ TEST(FieldArguments, AreReadByName) {
     EXPECT_EQ(coatAt(program, 1).map->children.at(1).children.size(), 2u);
 }
 
+TEST(FieldArguments, NorthAlongTheModelsUpAxisIsAMistakeWhereTheAxisIsKnown) {
+    const std::string script = "new copper\ncoat soot 1 wetness(latitude=50, north=(0, -2, 0))\n";
+    EXPECT_NO_THROW(readScript(script));
+    CheckContext context = testContext();
+    context.up = {0.0, 1.0, 0.0};
+    try {
+        readScript(script, context);
+        FAIL() << "the script was read";
+    } catch (const ScriptError& error) {
+        EXPECT_THAT(briefly(error.diagnostics()),
+                    ElementsAre("2:40: north lies along the model's up axis"));
+    }
+    context.up = {0.0, 0.0, 1.0};
+    EXPECT_NO_THROW(readScript(script, context));
+}
+
 TEST(FieldArguments, MistakesAreNamed) {
     EXPECT_THAT(briefly(findingsOf("new copper\n"
                                    "coat soot 1 exposure(latitude=95)\n"

@@ -56,6 +56,18 @@ TEST_F(OperatorsRunTest, EveryStatementDoesWhatItSays) {
     EXPECT_NEAR(stack.layers[3].meanUm, 0.2, 0.01);
 }
 
+TEST_F(OperatorsRunTest, MapsThatAskWhereUpIsSayWhereTheyStand) {
+    options_.up = Imath::V3d(0.0);
+    for (const char* map : {"slope", "elevation", "exposure", "wetness"})
+        try {
+            run(std::string("new copper\ncoat soot 0.2 0.5 * ") + map + "\n", ball_);
+            ADD_FAILURE() << map << " had an up axis";
+        } catch (const RunError& error) {
+            EXPECT_NE(std::string(error.what()).find("test.patina:2:21"), std::string::npos) << error.what();
+            EXPECT_NE(std::string(error.what()).find("no up axis"), std::string::npos) << error.what();
+        }
+}
+
 TEST_F(OperatorsRunTest, ErodeAndMetalGoesBelowTheBase) {
     const RunResult result = run("new copper\ncoat soot 0.2\nerode 0.7 and metal\n", ball_);
     EXPECT_EQ(result.volume->layerCount(), 0);

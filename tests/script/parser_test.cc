@@ -75,7 +75,8 @@ TEST(Parser, readsTheOtherClauses) {
                                        "coat soot 1\n"
                                        "erode 1 and metal by hardness as wind\n"
                                        "polish area 0.2 noise(1mm) window 2mm of copper\n"
-                                       "offset wax 1mm global\n");
+                                       "offset wax 1mm global\n"
+                                       "grow soot 1 noise(1mm) as more everywhere\n");
     const Erode& erode = std::get<Erode>(program.statements[2].action);
     EXPECT_TRUE(erode.andMetal);
     EXPECT_TRUE(erode.byHardness);
@@ -85,6 +86,8 @@ TEST(Parser, readsTheOtherClauses) {
     EXPECT_EQ(polish.ofMaterial, "copper");
     EXPECT_EQ(polish.map->text, "noise");
     EXPECT_TRUE(std::get<Offset>(program.statements[4].action).global);
+    EXPECT_TRUE(std::get<Grow>(program.statements[5].action).everywhere);
+    EXPECT_EQ(program.statements[5].label, "more");
 }
 
 TEST(Parser, endsAStatementAtItsLineButNotInsideBrackets) {

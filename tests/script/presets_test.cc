@@ -87,9 +87,19 @@ class Presets : public testing::Test {
         return runProgram(program_, body_, materials_, options_, progress_);
     }
 
+    /// Thicknesses of a material, µm, at what `counts` of the surface, ascending.
+    std::vector<double> sortedUm(const RunResult& result, const std::string& material,
+                                 const std::function<bool(const Imath::V3d&, const Imath::V3d&)>& counts) {
+        std::vector<double> all;
+        meanUm(result, material, counts, &all);
+        std::sort(all.begin(), all.end());
+        return all;
+    }
+
     /// Mean thickness of a material, µm, over what `counts` of the surface, by place and normal.
     double meanUm(const RunResult& result, const std::string& material,
-                  const std::function<bool(const Imath::V3d&, const Imath::V3d&)>& counts) {
+                  const std::function<bool(const Imath::V3d&, const Imath::V3d&)>& counts,
+                  std::vector<double>* all = nullptr) {
         const auto& layers = result.volume->layers();
         const auto found = std::find(layers.begin(), layers.end(), material);
         if (found == layers.end())
@@ -105,6 +115,8 @@ class Presets : public testing::Test {
             probe.read(middle, normal, um.data());
             sum += um[std::size_t(found - layers.begin())];
             count += 1.0;
+            if (all)
+                all->push_back(um[std::size_t(found - layers.begin())]);
         }
         EXPECT_GT(count, 0.0);
         return sum / count;
@@ -136,7 +148,14 @@ TEST_F(Presets, TheBuddhaIsDarkWhereNoHandReachesAndGreenWhereWaterStands) {
     // "the base ... where water is likely to accumulate"; horizontal places patinate more than vertical ones (2.2)
     EXPECT_GT(meanUm(old, "brochantite", foot), 2.0 * meanUm(old, "brochantite", reached));
     EXPECT_GT(meanUm(old, "brochantite", roof), meanUm(old, "brochantite", reached));
-    // Patches: thicknesses of a side vary by more than its mean from the wet and the foot.
+    // "Steadily growing random patches": on the north side, where neither hand nor foot makes a difference, the tenth
+    // with the most has half as much again as the tenth with the least and more.
+    const auto north = [](const Imath::V3d& p, const Imath::V3d& n) {
+        return n.z < -0.5 && p.y > 22 && p.y < 52 && p.x > 8 && p.x < 52;
+    };
+    const std::vector<double> side = sortedUm(old, "brochantite", north);
+    EXPECT_GT(side[side.size() * 9 / 10], 1.6 * side[side.size() / 10]); // hands keep them thin here
+    EXPECT_GT(side[side.size() / 10], 0.3); // on the steadily thickening layer
     const RunResult young = run("buddha.patina", {{"year", "9"}});
     EXPECT_LT(meanUm(young, "brochantite", reached), 0.5 * meanUm(old, "brochantite", reached));
 }
@@ -154,7 +173,20 @@ TEST_F(Presets, TheOldTowerIsGreenAllOverWithDirtWhereNoRainWashes) {
 }
 
 TEST_F(Presets, TheYoungTowerIsBrownWithStainsThatRunDown) {
+    // As tall as a small tower, so that the script's noise has room: three metres.
+    options_.scale.metresPerUnit = 0.05;
     const RunResult young = run("tower_young.patina", {});
+    // "Staining due to the flow of water over the top of the tower": streaks under the top, none at the foot.
+    const auto high = [](const Imath::V3d& p, const Imath::V3d& n) {
+        return std::abs(n.z) > 0.5 && p.y > 46 && p.y < 57 && p.x > 4 && p.x < 56;
+    };
+    const auto low = [](const Imath::V3d& p, const Imath::V3d& n) {
+        return std::abs(n.z) > 0.5 && p.y > 3 && p.y < 16 && p.x > 4 && p.x < 56;
+    };
+    EXPECT_GT(meanUm(young, "patina_urban_3", high), 4.0 * meanUm(young, "patina_urban_3", low) + 0.02);
+    const std::vector<double> stains = sortedUm(young, "patina_urban_3", high);
+    EXPECT_GT(stains[stains.size() * 9 / 10], 2.0 * stains[stains.size() / 2]); // and browner between them
+    EXPECT_GT(stains[stains.size() * 9 / 10], 4.0 * stains[stains.size() / 4]);
     const auto south = [](const Imath::V3d& p, const Imath::V3d& n) { return onSouthSide(p, n); };
     const auto& layers = young.volume->layers();
     ASSERT_GE(layers.size(), 2u);

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 namespace patina {
@@ -52,6 +53,157 @@ TEST(Weather, CategoriesFollowISO9224) {
     const auto at = [&](double years) { return patinaThicknessUm(copper, category("C4"), years); };
     EXPECT_NEAR(at(40.0) - at(30.0), at(30.0) - at(20.0), 1e-9);
     EXPECT_NEAR((at(20.001) - at(20.0)) / 0.001, (at(20.0) - at(19.999)) / 0.001, 1e-3);
+}
+
+// The city's rate is a range: 1 to 2 µm.
+TEST(Weather, ThePapersRangeHasALeastAndAMost) {
+    EXPECT_TRUE(hasPaperRange(plan("urban")));
+    EXPECT_FALSE(hasPaperRange(plan("marine")));
+    WeatherKinetics kinetics;
+    for (const double position : {0.0, 0.5, 1.0}) {
+        kinetics.position = position;
+        EXPECT_NEAR(patinaThicknessUm(plan("urban"), kinetics, 20.0) / 20.0, 1.0 + position, 1e-12);
+    }
+}
+
+// Molar volume per atom of copper, over copper's own: from molar mass (g/mol), atoms of copper and density (g/cm³).
+TEST(Weather, ExpansionsFollowFromMolarVolumes) {
+    const double copper = 63.546 / 8.96;
+    const auto ratio = [&](double mass, int atoms, double density) { return mass / density / atoms / copper; };
+    const double cuprite = ratio(143.09, 2, 6.0), sulphide = ratio(159.15, 2, 5.65);
+    const double posnjakite = ratio(470.30, 4, 3.335), brochantite = ratio(452.28, 4, 3.97);
+    const double antlerite = ratio(354.72, 3, 3.9), atacamite = ratio(213.56, 2, 3.76);
+    const WeatherPlan urban = plan("urban"), rural = plan("rural");
+    EXPECT_NEAR(urban.oxides[0].expansion, 1.0 / (0.85 / cuprite + 0.15 / sulphide), 0.01);
+    EXPECT_NEAR(rural.minerals[0].expansion, 1.0 / (0.6 / posnjakite + 0.15 / brochantite + 0.15 / atacamite), 0.02);
+    EXPECT_NEAR(urban.minerals[1].expansion, 1.0 / (0.45 / antlerite + 0.44 / brochantite), 0.02);
+    EXPECT_GT(rural.minerals[0].expansion, rural.minerals[1].expansion); // posnjakite is the bulkier
+}
+
+// What is not washed away of the metal lost is in the layers, each µm of them holding 1 / expansion of it.
+TEST(Weather, TheMetalOfACategoryIsInTheLayers) {
+    for (const std::string& name : weatherPlans(dataFolder)) {
+        const std::size_t split = name.find('_');
+        const WeatherPlan one = plan(name.substr(split + 1), name.substr(0, split));
+        for (const double years : {25.0, 60.0}) {
+            const auto layers = layerThicknessesUm(one, category("C4"), years);
+            double metal = 0.0;
+            for (std::size_t i = 0; i < layers.size(); ++i)
+                metal += layers[i] / (i < one.oxides.size() ? one.oxides[i].expansion
+                                                            : one.minerals[i - one.oxides.size()].expansion);
+            EXPECT_NEAR(metal, patinaThicknessUm(one, category("C4"), years) / one.expansion, 2e-3 * metal) << name;
+        }
+    }
+}
+
+// Half of every µm in a half-life: a stock that was there from the start halves, and frames compose.
+TEST(Weather, ConversionIsTheSameInOneFrameAndInMany) {
+    const WeatherPlan rural = plan("rural");
+    const WeatherConversion& turning = rural.conversions.at(0);
+    const auto grown = [&](double year) { return layerThicknessesUm(rural, {}, year)[rural.oxides.size()]; };
+    const auto leftAfter = [&](const std::vector<double>& years) {
+        double left = 0.0, before = 0.0;
+        for (const double year : years) {
+            left = (left + grown(year) - grown(before)) * (1.0 - convertedFraction(rural, {}, turning, before, year));
+            before = year;
+        }
+        return left;
+    };
+    std::vector<double> many;
+    for (double year = 1.5; year <= 30.0; year += 1.5)
+        many.push_back(year);
+    EXPECT_NEAR(leftAfter({30.0}), leftAfter(many), 0.01 * leftAfter(many));
+    EXPECT_LT(leftAfter({30.0}), grown(30.0));
+    // Nothing grows after 20 years: by then only half of it is left after each half-life.
+    EXPECT_NEAR(convertedFraction(rural, {}, turning, 40.0, 40.0 + turning.halfLifeYears), 0.5, 0.01);
+    EXPECT_EQ(convertedFraction(rural, {}, turning, 0.0, turning.begins), 0.0);
+}
+
+// Figure 2: tarnish, cuprite, then the minerals of the third and fourth stage; and when the green comes, as published:
+// 5 to 7 years by the sea, where it "reaches a dominant stage" in the country in 10 to 14 (Copper Development
+// Association); in the city "much earlier", an almost continuous coating half way through thirty years (§5.1).
+TEST(Weather, StagesComeInTheOrderAndAtTheTimesOfFigureTwo) {
+    const auto layersAt = [](const WeatherPlan& one, double year) { return layerThicknessesUm(one, {}, year); };
+    // Of the room that oxides leave, the part that minerals have taken.
+    const auto greenAt = [&](const WeatherPlan& one, double year) {
+        const auto layers = layersAt(one, year);
+        double oxides = 0.0, minerals = 0.0;
+        for (std::size_t i = 0; i < layers.size(); ++i)
+            (i < one.oxides.size() ? oxides : minerals) += layers[i];
+        return minerals / (patinaThicknessUm(one, {}, year) - oxides);
+    };
+    for (const char* environment : {"marine", "rural", "urban"}) {
+        const WeatherPlan one = plan(environment);
+        ASSERT_EQ(one.oxides.size() + one.minerals.size(), 4u);
+        const auto last = layersAt(one, 30.0);
+        double before = 0.0;
+        for (std::size_t i = 0; i < last.size(); ++i) { // half of each is there
+            double year = 0.0;
+            while (layersAt(one, year)[i] < 0.5 * last[i])
+                year += 0.1;
+            EXPECT_GT(year, before) << environment << ", stage " << i + 1;
+            before = year;
+        }
+        EXPECT_NE(one.oxides[0].material.find("tarnish"), std::string::npos);
+        EXPECT_NE(one.oxides[1].material.find("cuprite"), std::string::npos);
+        for (std::size_t i = 0; i < 2; ++i)
+            EXPECT_NE(one.minerals[i].material.find(i == 0 ? "_3" : "_4"), std::string::npos);
+    }
+    EXPECT_LT(greenAt(plan("marine"), 5.0), 0.5);
+    EXPECT_GT(greenAt(plan("marine"), 7.0), 0.5);
+    EXPECT_LT(greenAt(plan("rural"), 7.0), 0.25);
+    EXPECT_GT(greenAt(plan("rural"), 10.0), 0.5);
+    EXPECT_GT(greenAt(plan("rural"), 14.0), 0.95);
+    EXPECT_GT(greenAt(plan("urban"), 3.0), 0.95);
+    for (const double year : {2.0, 4.0, 8.0})
+        EXPECT_GT(greenAt(plan("urban"), year), greenAt(plan("rural"), year) + 0.2) << year;
+    // Posnjakite is the first sulphate on land, and turns.
+    for (const char* environment : {"rural", "urban"})
+        EXPECT_EQ(plan(environment).conversions.at(0).from, plan(environment).minerals[0].material);
+    EXPECT_LT(plan("urban").conversions[0].halfLifeYears, plan("rural").conversions[0].halfLifeYears);
+    EXPECT_TRUE(plan("marine").conversions.empty());
+}
+
+// The steps of a pattern and its even part depend on the year alone: the last frame of many is that of two.
+TEST(Weather, FramesDoNotChangeWhatIsThereInTheEnd) {
+    const auto last = [](int frames) {
+        std::vector<double> years;
+        for (int i = 0; i < frames; ++i)
+            years.push_back(30.0 * i / (frames - 1));
+        std::map<std::string, std::pair<int, double>> out; // step and even µm by material
+        for (const WeatherFrame& frame : weatherScripts(plan("marine"), {}, years, "marine")) {
+            CheckContext context = testContext();
+            context.checkFiles = false;
+            for (const Statement& statement : readScript(frame.script, context).statements) {
+                const auto* coat = std::get_if<Coat>(&statement.action);
+                const auto* grow = std::get_if<Grow>(&statement.action);
+                if (!coat && !grow)
+                    continue;
+                EXPECT_TRUE(coat || grow->everywhere);
+                auto& [step, even] = out[coat ? coat->material : grow->material];
+                const double um = coat ? coat->thicknessUm : grow->thicknessUm;
+                const std::optional<Expression>& whole = coat ? coat->map : grow->map;
+                const Expression* map = whole ? &*whole : nullptr;
+                while (map && map->kind == Expression::Kind::binary)
+                    map = &map->children[0];
+                if (map && map->text == "mix" && map->children[2].kind == Expression::Kind::growth) {
+                    even += map->children[0].number * um;
+                    map = &map->children[2];
+                }
+                if (map && map->kind == Expression::Kind::growth)
+                    step = map->growth->step;
+                else
+                    even += um;
+            }
+        }
+        return out;
+    };
+    const auto two = last(2), many = last(13);
+    ASSERT_EQ(two.size(), 4u);
+    for (const auto& [material, end] : two) {
+        EXPECT_EQ(many.at(material).first, end.first) << material;
+        EXPECT_NEAR(many.at(material).second, end.second, 0.01 * end.second + 0.002) << material;
+    }
 }
 
 TEST(Weather, LayersAddUpToThePatinaAndNeverShrink) {

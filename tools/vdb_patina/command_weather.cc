@@ -126,8 +126,10 @@ void weather(const Arguments& arguments, const Options& options, Console& consol
     WeatherKinetics kinetics;
     kinetics.category = arguments.category;
     patinaThicknessUm(plan, kinetics, 1.0); // an unknown category is told before anything is made
-    if (arguments.extremes && arguments.category.empty())
-        throw Error(ExitCode::commandLine, "--extremes", "only a category has a range", "give one with --category");
+    if (arguments.extremes && arguments.category.empty() && !hasPaperRange(plan))
+        throw Error(ExitCode::commandLine, "--extremes",
+                    "only a category has a range, and the paper's rate for copper in the city",
+                    "give one with --category");
     checkPictures(arguments, options);
     const fs::path folder =
         options.dryRun ? fs::path() : outputFolder(options, fs::path(arguments.model).stem().string() + "_weather");
@@ -173,7 +175,7 @@ void addWeatherCommand(CLI::App& app, Options& options, Action& action) {
                      "Corrosivity category of ISO 9223, C1 to CX (default: the paper's rates)")
         ->type_name("C")
         ->group(group);
-    command->add_flag("--extremes", arguments->extremes, "Two series, for the least and the most of the category")
+    command->add_flag("--extremes", arguments->extremes, "Two series, for the least and the most of the category (or of the paper's rate)")
         ->group(group);
     command->add_option("--latitude", arguments->latitude, "Of the place, degrees, north positive (default 45)")
         ->type_name("DEGREES")

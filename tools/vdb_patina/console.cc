@@ -60,6 +60,11 @@ void Console::update(double fraction) {
         writeError(nlohmann::json({{"stage", stage_}, {"state", "running"}, {"fraction", fraction}}).dump() + "\n");
 }
 
+void Console::startOver() {
+    stages_.clear();
+    warnings_.clear();
+}
+
 void Console::end() {
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     stages_.push_back({stage_, seconds});

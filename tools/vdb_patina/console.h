@@ -40,6 +40,8 @@ class Console : public Progress {
         std::string name;
         double seconds;
     };
+    /// Forgets the stages and warnings so far: what follows has a report of its own.
+    void startOver();
     const std::vector<Stage>& stages() const { return stages_; }
     const std::vector<std::string>& warnings() const { return warnings_; }
 

@@ -48,6 +48,8 @@ CheckContext checkContext(const MaterialLibrary& materials, const Options& optio
     CheckContext context;
     declareAbilities(context, materials);
     context.settings = options.settingMap();
+    const Imath::V3d up = upVector(options.up);
+    context.up = {up.x, up.y, up.z};
     return context;
 }
 
@@ -73,6 +75,17 @@ Task prepareTask(const std::string& script, const std::string& modelName, const 
     for (const Diagnostic& warning : program.warnings)
         console.warning(warning);
     return {std::move(program), std::move(model)};
+}
+
+void nextScript(Task& task, const std::string& script, const MaterialLibrary& materials, const Options& options,
+                Console& console) {
+    CheckContext context = checkContext(materials, options);
+    context.vertexAttributes.emplace();
+    for (const auto& attribute : task.model.surface.vertexAttributes)
+        context.vertexAttributes->push_back(attribute.first);
+    task.program = readProgramFile(script, context);
+    for (const Diagnostic& warning : task.program.warnings)
+        console.warning(warning);
 }
 
 RunOptions runOptionsOf(const Task& task, const Options& options) {

@@ -30,6 +30,10 @@ CheckContext checkContext(const MaterialLibrary& materials, const Options& optio
 Task prepareTask(const std::string& script, const std::string& modelName, const MaterialLibrary& materials,
                  const Options& options, Console& console);
 
+/// Reads another script for the same model: the next of a series, which opens the last one's volume.
+void nextScript(Task& task, const std::string& script, const MaterialLibrary& materials, const Options& options,
+                Console& console);
+
 RunOptions runOptionsOf(const Task& task, const Options& options);
 
 /// Says what the run needs. \throws Error (over budget) where that is more than allowed and not forced

@@ -13,6 +13,8 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 namespace patina::tool {
 
 namespace {
@@ -26,9 +28,17 @@ bool isDone(const fs::path& folder, const std::string& name, const std::string& 
            readTextFile(scriptFile.string()) == script;
 }
 
-// \param view  of the whole series: found by the first frame that is run
-void runFrame(const WeatherFrame& frame, const fs::path& folder, const WeatherSeries& series, const Options& given,
-              std::shared_ptr<const View>& view, bool withMaps, const MaterialLibrary& materials, Console& console) {
+// What the frames have in common: the model, what a run leaves to the next, and the view (found by the first frame that
+// is run).
+struct Series {
+    std::optional<Task> task;
+    RunSession session;
+    std::shared_ptr<const View> view;
+};
+
+void runFrame(const WeatherFrame& frame, const fs::path& folder, const WeatherSeries& series, Series& common,
+              const Options& given, bool withMaps, const MaterialLibrary& materials, Console& console) {
+    console.startOver();
     Options options = given;
     options.output = folder.string();
     options.report.clear();
@@ -36,17 +46,24 @@ void runFrame(const WeatherFrame& frame, const fs::path& folder, const WeatherSe
     fs::create_directories(folder);
     const fs::path scriptFile = folder / (series.environment + ".patina");
     writeTextFile(scriptFile, frame.script);
-    const Task task = prepareTask(scriptFile.string(), series.model, materials, options, console);
+    if (common.task)
+        nextScript(*common.task, scriptFile.string(), materials, options, console);
+    else
+        common.task = prepareTask(scriptFile.string(), series.model, materials, options, console);
+    const Task& task = *common.task;
     checkBudget(task, options, console);
-    if (!view && options.pictureSize > 0)
-        view = std::make_shared<const View>(stillViewOf(options, task.model));
-    options.view = view;
+    if (!common.view && options.pictureSize > 0)
+        common.view = std::make_shared<const View>(stillViewOf(options, task.model));
+    options.view = common.view;
     reportFile(options, folder);
-    RunResult result = runProgram(task.program, task.model.surface, materials, runOptionsOf(task, options), console);
+    RunOptions run = runOptionsOf(task, options);
+    run.session = &common.session;
+    RunResult result = runProgram(task.program, task.model.surface, materials, run, console);
     if (result.interrupted)
         throw Interrupted();
     warnAboutClamping(result, console);
     writeResults(task, result, nlohmann::ordered_json::array(), materials, options, folder, console);
+    common.session.keep(folder / (task.program.name + ".vdb"), std::move(*result.volume));
 }
 
 // Where all frames were done by an earlier run.
@@ -62,7 +79,8 @@ std::vector<LabelledImage> runWeatherSeries(const WeatherSeries& series, const O
                                             Console& console) {
     const MaterialLibrary materials = MaterialLibrary::load(findDataFolder());
     std::vector<LabelledImage> pictures;
-    std::shared_ptr<const View> view = options.view;
+    Series common;
+    common.view = options.view;
     TimeLapse lapse{series.model, series.environment, {}, series.film ? series.between : 0, series.framesPerSecond};
     for (std::size_t i = 0; i < series.frames.size(); ++i) {
         const WeatherFrame& frame = series.frames[i];
@@ -73,7 +91,7 @@ std::vector<LabelledImage> runWeatherSeries(const WeatherSeries& series, const O
             console.notice("done by an earlier run");
         } else {
             try {
-                runFrame(frame, here, series, options, view, withMaps, materials, console);
+                runFrame(frame, here, series, common, options, withMaps, materials, console);
             } catch (const Interrupted&) {
                 throw Error(ExitCode::interrupted, "weather",
                             fmt::format("interrupted in year {:g}; {} of {} frames are finished and saved", frame.year,
@@ -96,7 +114,7 @@ std::vector<LabelledImage> runWeatherSeries(const WeatherSeries& series, const O
     }
     if (series.film && options.pictureSize > 0) {
         Options shown = options;
-        shown.view = view ? view : viewOfFrame(lapse.volumes.front(), series.model, options, console);
+        shown.view = common.view ? common.view : viewOfFrame(lapse.volumes.front(), series.model, options, console);
         writeTimeLapse(lapse, shown, folder, console);
     }
     return pictures;

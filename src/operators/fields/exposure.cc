@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace patina {
 
@@ -62,25 +63,55 @@ double DomeGatherer::irradiance(const V3f& position, const V3f& normal, int set,
 
 namespace {
 
-// The mean over a voxel's 26 neighbours that face the same way: they have other sets of directions, so the grain of one
-// set goes, while shadows only get as soft as the voxels are.
+// A plane through the values of a voxel and of its 26 neighbours that face the same way, read at the voxel itself: they
+// have other sets of directions, so the grain of one set goes, while shadows only get as soft as the voxels are. A mean
+// would do in the middle of a wall; beside its edge all neighbours lie on one side, and it would be their value.
+class PlaneFit {
+  public:
+    void add(double weight, const V3f& away, const V3f& s, const V3f& t, float value) {
+        const double x = away.dot(s), y = away.dot(t);
+        w_ += weight;
+        x_ += weight * x, y_ += weight * y, v_ += weight * value;
+        xx_ += weight * x * x, xy_ += weight * x * y, yy_ += weight * y * y;
+        xv_ += weight * x * value, yv_ += weight * y * value;
+        least_ = std::min(least_, value);
+        most_ = std::max(most_, value);
+    }
+
+    float atOrigin() const {
+        const double x = x_ / w_, y = y_ / w_, v = v_ / w_;
+        constexpr double stiffness = 0.02; // voxels²: few neighbours in a line make no plane
+        const double xx = xx_ / w_ - x * x + stiffness, yy = yy_ / w_ - y * y + stiffness, xy = xy_ / w_ - x * y;
+        const double xv = xv_ / w_ - x * v, yv = yv_ / w_ - y * v;
+        const double determinant = xx * yy - xy * xy;
+        const double slopeX = (yy * xv - xy * yv) / determinant, slopeY = (xx * yv - xy * xv) / determinant;
+        return std::clamp(static_cast<float>(v - slopeX * x - slopeY * y), least_, most_);
+    }
+
+  private:
+    double w_ = 0.0, x_ = 0.0, y_ = 0.0, v_ = 0.0, xx_ = 0.0, xy_ = 0.0, yy_ = 0.0, xv_ = 0.0, yv_ = 0.0;
+    float least_ = std::numeric_limits<float>::max(), most_ = std::numeric_limits<float>::lowest();
+};
+
 std::vector<float> withoutGrain(const SurfaceVoxels& surface, const std::vector<float>& values) {
     const VoxelTable table(surface.voxels);
     std::vector<float> smooth(values.size());
     tbb::parallel_for(std::size_t(0), values.size(), [&](std::size_t i) {
-        double sum = 2.0 * values[i], weights = 2.0;
+        const V3f& normal = surface.normals[i];
+        const V3f s = normal.cross(std::abs(normal.x) < 0.6f ? V3f(1, 0, 0) : V3f(0, 1, 0)).normalized();
+        const V3f t = normal.cross(s);
+        PlaneFit fit;
+        fit.add(2.0, V3f(0.f), s, t, values[i]);
         for (int c = 0; c < 27; ++c) {
             const int j =
                 c == 13 ? -1 : table.find(surface.voxels[i] + Imath::V3i(c / 9 - 1, c / 3 % 3 - 1, c % 3 - 1));
             if (j < 0)
                 continue;
-            const double alike = (surface.normals[i].dot(surface.normals[j]) - 0.9) / 0.1;
-            if (alike > 0.0) {
-                sum += alike * values[j];
-                weights += alike;
-            }
+            const double alike = (normal.dot(surface.normals[j]) - 0.9) / 0.1;
+            if (alike > 0.0)
+                fit.add(alike, surface.feet[j] - surface.feet[i], s, t, values[j]);
         }
-        smooth[i] = static_cast<float>(sum / weights);
+        smooth[i] = fit.atOrigin();
     });
     return smooth;
 }

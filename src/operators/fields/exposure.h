@@ -23,8 +23,8 @@ struct DomeGathering {
 /// at the zenith that is the horizontal one.)
 ///
 /// Directions are drawn once, by importance, for all places; 64 sets of them alternate from voxel to voxel, so that
-/// what is left of their error is fine grain and no edge of a shadow, and each voxel is averaged with its neighbours
-/// that face the same way. A ray whose direction lies behind the surface costs nothing. The same on any number of
+/// what is left of their error is fine grain and no edge of a shadow, and each voxel is averaged (by a plane)
+/// with its neighbours that face the same way. A ray whose direction lies behind the surface costs nothing. The same on any number of
 /// threads. \param clearance  how far along the normal rays start from the feet, scene units \throws RunError where the
 /// dome is dark; Interrupted
 std::vector<float> gatherDome(const SurfaceVoxels& surface, double voxelSize, const LightDome& dome,

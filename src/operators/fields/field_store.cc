@@ -28,6 +28,10 @@ constexpr double clearanceVoxels = 0.3;
 /// Creases that hold water are those a ball of this part of the model's height cannot enter.
 constexpr double creaseRadius = 0.02;
 
+constexpr const char* originKey = "patina_field_origin";
+/// To be raised with every change of what fields are: those of older files are then computed again.
+constexpr const char* fieldsVersion = "fields 1";
+
 std::string lengthForName(double um) {
     if (um >= 1e6)
         return fmt::format("{:g}m", um * 1e-6);
@@ -82,6 +86,15 @@ std::string ExposureRequest::fieldName(const std::string& word) const {
     return name;
 }
 
+std::string AccessibilityRequest::text() const { return fmt::format("{:a} {:a} {}", radius, radiusUm, global); }
+
+std::string ExposureRequest::text() const {
+    const Imath::V3d towards = north.value_or(V3d(0.0));
+    return fmt::format("{} {} {:a} {} {} {:a} {:a} {:a} {:a} {:a} {:a} {} {}", light.sky.value_or(-1), light.sun,
+                       light.latitudeDegrees, light.firstMonth, light.lastMonth, light.firstHour, light.lastHour,
+                       light.clouds, towards.x, towards.y, towards.z, rays, ground);
+}
+
 const FieldStore::Surface& FieldStore::presentSurface() {
     LayerVolume& volume = *scene_.volume;
     const int layer = stackHeightVoxels(volume) > thinStack ? volume.layerCount() : 0;
@@ -95,15 +108,41 @@ const FieldStore::Surface& FieldStore::presentSurface() {
     return surface_;
 }
 
-const ThicknessMapPtr* FieldStore::find(const std::string& name) {
-    const Surface& surface = presentSurface();
-    const auto found = kept_.find(name);
-    return found != kept_.end() && found->second.surface == surface.hash ? &found->second.map : nullptr;
+// All that a field depends on but the model, which belongs to its volume.
+std::string FieldStore::originOf(const std::string& name, const std::string& request) const {
+    if (scene_.whole)
+        return {}; // of a close-up the whole model casts shadows, and is not known here well enough
+    ContentHash hash;
+    hash.add(fieldsVersion);
+    hash.add(name);
+    hash.add(request);
+    hash.add(fmt::format("{:a} {:a} {:a} {:a} {:a} {} {:x}", scene_.up.x, scene_.up.y, scene_.up.z, scene_.lowest,
+                         scene_.highest, surface_.layer, surface_.hash));
+    return hash.text();
 }
 
-ThicknessMapPtr FieldStore::keep(const std::string& name, const std::vector<float>& values) {
+const ThicknessMapPtr* FieldStore::find(const std::string& name, const std::string& request) {
+    const Surface& surface = presentSurface();
+    auto found = kept_.find(name);
+    if (found == kept_.end()) {
+        const auto& fields = scene_.volume->grids().fields;
+        const auto stored = fields.find(name);
+        if (stored == fields.end())
+            return nullptr;
+        const auto origin = stored->second->getMetadata<openvdb::StringMetadata>(originKey);
+        if (!origin || origin->value().empty() || origin->value() != originOf(name, request))
+            return nullptr;
+        found = kept_.emplace(name, Kept{surface.hash, request, makeFieldMap(*scene_.volume, name)}).first;
+    }
+    const Kept& kept = found->second;
+    return kept.surface == surface.hash && kept.request == request ? &kept.map : nullptr;
+}
+
+ThicknessMapPtr FieldStore::keep(const std::string& name, const std::string& request,
+                                 const std::vector<float>& values) {
     storeField(*scene_.volume, name, surface_.layer, surface_.voxels, values);
-    kept_[name] = {surface_.hash, makeFieldMap(*scene_.volume, name)};
+    scene_.volume->grids().fields.at(name)->insertMeta(originKey, openvdb::StringMetadata(originOf(name, request)));
+    kept_[name] = {surface_.hash, request, makeFieldMap(*scene_.volume, name)};
     return kept_[name].map;
 }
 
@@ -146,21 +185,21 @@ std::vector<float> FieldStore::exposureValues(const ExposureRequest& request, Pr
 
 ThicknessMapPtr FieldStore::accessibility(const AccessibilityRequest& request, Progress& progress) {
     const std::string name = request.fieldName();
-    if (const auto* kept = find(name))
+    if (const auto* kept = find(name, request.text()))
         return *kept;
-    return keep(name, accessibilityValues(request, progress));
+    return keep(name, request.text(), accessibilityValues(request, progress));
 }
 
 ThicknessMapPtr FieldStore::exposure(const ExposureRequest& request, Progress& progress) {
     const std::string name = request.fieldName();
-    if (const auto* kept = find(name))
+    if (const auto* kept = find(name, request.text()))
         return *kept;
-    return keep(name, exposureValues(request, progress));
+    return keep(name, request.text(), exposureValues(request, progress));
 }
 
 ThicknessMapPtr FieldStore::wetness(const ExposureRequest& request, Progress& progress) {
     const std::string name = request.fieldName("wetness");
-    if (const auto* kept = find(name))
+    if (const auto* kept = find(name, request.text()))
         return *kept;
     requireUp(scene_.up);
     const double voxelSize = scene_.volume->scale().voxelSize;
@@ -178,7 +217,7 @@ ThicknessMapPtr FieldStore::wetness(const ExposureRequest& request, Progress& pr
     options.up = scene_.up.normalized();
     options.lowest = scene_.lowest / voxelSize;
     options.height = height / voxelSize;
-    return keep(name, patina::wetness(surface_.voxels, parts, options));
+    return keep(name, request.text(), patina::wetness(surface_.voxels, parts, options));
 }
 
 } // namespace patina

@@ -21,6 +21,7 @@ struct AccessibilityRequest {
     bool global = false;
 
     std::string fieldName() const; ///< "accessibility_3mm", "accessibility_3mm_global"
+    std::string text() const;      ///< all of it, exactly
 };
 
 /// `exposure`, `exposure(sky=overcast, latitude=45, months=(4, 9), rays=256, ground=yes)`.
@@ -32,6 +33,7 @@ struct ExposureRequest {
 
     /// "exposure", "exposure_overcast_latitude52"
     std::string fieldName(const std::string& word = "exposure") const;
+    std::string text() const; ///< all of it, exactly
 };
 
 /// Where the fields are computed and kept.
@@ -39,7 +41,8 @@ struct ExposureRequest {
 /// A field is a function of the volume's present state and of nothing else, so that a run that is interrupted and
 /// resumed, or continued by `open`, has the same bits: where the whole stack is thinner than a quarter of a voxel, it
 /// is computed on the metal (and then stays true while films come and go); where it is thicker, on the present surface.
-/// It is computed again only where that surface's values have changed.
+/// It is computed again only where that surface's values have changed, and not where the volume came with the field:
+/// with its grid stands a hash of all that it was made from.
 class FieldStore {
   public:
     struct Scene {
@@ -64,6 +67,7 @@ class FieldStore {
   private:
     struct Kept {
         std::uint64_t surface = 0; ///< hash of the interface that it was computed on
+        std::string request;       ///< names round their numbers
         ThicknessMapPtr map;
     };
     struct Surface {
@@ -73,8 +77,9 @@ class FieldStore {
     };
 
     const Surface& presentSurface();
-    const ThicknessMapPtr* find(const std::string& name);
-    ThicknessMapPtr keep(const std::string& name, const std::vector<float>& values);
+    const ThicknessMapPtr* find(const std::string& name, const std::string& request);
+    ThicknessMapPtr keep(const std::string& name, const std::string& request, const std::vector<float>& values);
+    std::string originOf(const std::string& name, const std::string& request) const;
     std::vector<float> accessibilityValues(const AccessibilityRequest& request, Progress& progress);
     std::vector<float> exposureValues(const ExposureRequest& request, Progress& progress);
     std::vector<float> gather(const LightDome& dome, const Compass& compass, const DomeGathering& options,

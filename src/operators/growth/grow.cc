@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
+#include <tuple>
 
 namespace patina {
 
@@ -75,6 +78,18 @@ std::vector<std::array<int, 4>> closedNeighbours(const GrowthLattice& lattice) {
     return closed;
 }
 
+namespace {
+
+// All that the reference plane depends on.
+using ScaleKey = std::tuple<GrowthModel, double, int, int, double, double, double, double, double, double, double>;
+
+ScaleKey scaleKey(const GrowthOptions& o) {
+    return {o.model,           o.age(),  o.reach,         o.patch,      o.firstSeeds,  o.seeding,
+            o.blockedFraction, o.spread, o.blockedSpread, o.thickening, o.pointSpacing};
+}
+
+} // namespace
+
 GrowthScale expectedScale(const GrowthOptions& given) {
     GrowthOptions options = given;
     options.arrival.clear();
@@ -92,11 +107,23 @@ GrowthScale expectedScale(const GrowthOptions& given) {
         side = 512;
     if (options.model == GrowthModel::steadyThickening)
         options.pointSpacing = std::min(options.pointSpacing, 8.0); // the statistics do not depend on the spacing
+    // Series ask for the same few again and again, and a plane takes a third of a second.
+    static std::mutex mutex;
+    static std::map<ScaleKey, GrowthScale> known;
+    const ScaleKey key = scaleKey(options);
+    {
+        const std::lock_guard<std::mutex> lock(mutex);
+        if (const auto found = known.find(key); found != known.end())
+            return found->second;
+    }
     const bool periodic = options.model != GrowthModel::steadyThickening;
     const GrowthLattice plane = flatLattice(side, side, periodic);
     const GrowthRun run{plane, options, age, 0x9e3779b97f4a7c15u, "reference plane", nullptr, nullptr};
     const GrowthStatistics statistics = measureHeights(plane, runModel(run).height);
-    return {statistics.mean, statistics.interfaceWidth};
+    const GrowthScale scale{statistics.mean, statistics.interfaceWidth};
+    const std::lock_guard<std::mutex> lock(mutex);
+    known[key] = scale;
+    return scale;
 }
 
 double growthMarginCells(const GrowthOptions& options) {

@@ -251,6 +251,54 @@ TEST(Sun, StandsWherePublishedExamplesSay) {
     EXPECT_EQ(julianDayOf(2000, 1, 1.5), 2451545.0);
 }
 
+// Geometry alone: at noon the sun stands 90° - |latitude - declination| high, at the equinox it rises due east, and
+// south of the tropics it is north at noon.
+TEST(Sun, StandsNorthAtNoonInTheSouth) {
+    const double solstice = 23.44 * degree;
+    for (const double latitude : {-33.87, -51.0, -66.0}) {
+        const SunPosition noon = sunAbove(latitude * degree, solstice, 0.0);
+        EXPECT_NEAR(noon.altitude / degree, 90.0 - (23.44 - latitude), 1e-6) << latitude;
+        EXPECT_NEAR(std::cos(noon.azimuth), 1.0, 1e-9) << latitude;
+        const SunPosition sunrise = sunAbove(latitude * degree, 0.0, -0.5 * M_PI);
+        EXPECT_NEAR(sunrise.altitude, 0.0, 1e-9);
+        EXPECT_NEAR(sunrise.azimuth / degree, 90.0, 1e-6);
+        // Mirror images: what is south there is north here, half a year apart.
+        for (const double hour : {-70.0, -20.0, 35.0}) {
+            const SunPosition south = sunAbove(latitude * degree, solstice, hour * degree);
+            const SunPosition north = sunAbove(-latitude * degree, -solstice, hour * degree);
+            EXPECT_NEAR(south.altitude, north.altitude, 1e-12);
+            EXPECT_NEAR(std::cos(south.azimuth), -std::cos(north.azimuth), 1e-12);
+            EXPECT_NEAR(std::sin(south.azimuth), std::sin(north.azimuth), 1e-12);
+        }
+    }
+    // On a whole sphere: dailyIrradiation() of the mirrored plane and season.
+    for (const double tilt : {20.0, 70.0}) {
+        const V3d toNorth(0.0, std::sin(tilt * degree), std::cos(tilt * degree));
+        EXPECT_NEAR(dailyIrradiation(-40.0 * degree, -15.0 * degree, toNorth),
+                    dailyIrradiation(40.0 * degree, 15.0 * degree, {0.0, -toNorth.y, toNorth.z}), 1e-9);
+    }
+}
+
+// Equinoxes and solstices as the U.S. Naval Observatory publishes them (universal time, to the minute): there the
+// longitude of the sun is a multiple of 90°, so its declination is 0 or the obliquity and its right ascension 0, 6, 12
+// or 18 hours. The sun moves 0.04° an hour.
+TEST(Sun, IsAtTheEquinoxesAndSolsticesThatAreInTheAlmanac) {
+    struct Row {
+        int year, month;
+        double day, hour, minute, declination, rightAscension;
+    };
+    for (const Row& row : {Row{2000, 3, 20, 7, 35, 0.0, 0.0}, Row{2000, 6, 21, 1, 48, 23.439, 90.0},
+                           Row{2000, 9, 22, 17, 28, 0.0, 180.0}, Row{2000, 12, 21, 13, 37, -23.439, 270.0},
+                           Row{2020, 3, 20, 3, 50, 0.0, 0.0}, Row{2020, 6, 20, 21, 44, 23.437, 90.0},
+                           Row{2020, 9, 22, 13, 31, 0.0, 180.0}, Row{2020, 12, 21, 10, 2, -23.437, 270.0}}) {
+        const SunCoordinates sun =
+            sunCoordinates(julianDayOf(row.year, row.month, row.day + (row.hour + row.minute / 60.0) / 24.0));
+        EXPECT_NEAR(sun.declination / degree, row.declination, 0.02) << row.year << ' ' << row.month;
+        const double away = std::remainder(sun.rightAscension / degree - row.rightAscension, 360.0);
+        EXPECT_NEAR(away, 0.0, 0.02) << row.year << ' ' << row.month;
+    }
+}
+
 TEST(Sun, DailyIrradiationOfTiltedPlanesMatchesTheClosedForm) {
     for (const double latitude : {0.0, 30.0, 52.0})
         for (const double declination : {-23.0, 0.0, 15.0, 23.0})

@@ -10,6 +10,7 @@
 #include "volume/stack_probe.h"
 
 #include <gtest/gtest.h>
+#include <openvdb/tools/ValueTransformer.h>
 
 namespace patina {
 namespace {
@@ -105,6 +106,38 @@ TEST(FieldStore, ComputesAFieldOnceForEachStateOfTheSurface) {
                     .fields.at(request.fieldName())
                     ->tree()
                     .hasSameTopology(stand.piece->volume->grids().base->tree()));
+}
+
+// A field that came with the volume is read, not computed: told from a fresh one by a value that nothing computes.
+TEST(FieldStore, ReadsWhatCameWithTheVolumeAsLongAsAllItWasMadeFromIsTheSame) {
+    Stand stand(test::sphere(14.f, 4));
+    ExposureRequest request;
+    request.rays = 16;
+    Progress progress;
+    stand.store->exposure(request, progress);
+    const V3d top(0, 14, 0);
+    auto& field = stand.piece->volume->grids().fields.at(request.fieldName());
+    openvdb::tools::foreach (field->beginValueOn(), [](const auto& voxel) { voxel.setValue(0.123f); });
+
+    const auto another = [&](const V3d& up) {
+        FieldStore::Scene scene;
+        scene.volume = stand.piece->volume.get();
+        scene.binding = stand.piece->binding.get();
+        scene.up = up;
+        scene.lowest = stand.piece->surface.bounds().min.y;
+        scene.highest = stand.piece->surface.bounds().max.y;
+        return FieldStore(scene);
+    };
+    FieldStore later = another({0, 1, 0});
+    EXPECT_FLOAT_EQ(Stand::at(later.exposure(request, progress), top), 0.123f);
+    EXPECT_GT(Stand::at(another({0, 0, 1}).exposure(request, progress), {0, 0, 14}), 0.5);
+    EXPECT_GT(Stand::at(another({0, 1, 0}).exposure(request, progress), top), 0.5);
+
+    // On another surface it is computed, though its grid is there.
+    openvdb::tools::foreach (field->beginValueOn(), [](const auto& voxel) { voxel.setValue(0.123f); });
+    Workpiece work = stand.piece->work();
+    coat(work, "soot", 1.5, nullptr, progress);
+    EXPECT_GT(Stand::at(another({0, 1, 0}).exposure(request, progress), top), 0.5);
 }
 
 TEST(FieldStore, NamesFieldsAfterTheirArguments) {
