@@ -1,9 +1,14 @@
 #include "script/budget.h"
 
 #include "script/interpreter.h"
+#include "volume/voxelize.h"
+
+#include <Imath/ImathBox.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 namespace patina {
 
@@ -50,11 +55,11 @@ double workingBytesPerVoxel(const Program& program, const VolumeScale& scale) {
     for (const Statement& statement : program.statements) {
         double bytes = 0.0;
         // Thickness and slope of a shift; the distance and its foot where it is thicker than a voxel.
-        const auto shift = [&](double um) { bytes = um * perUm > 1.0 ? 8.0 + 16.0 : 8.0; };
+        const auto shift = [&](double um) { return um * perUm > 1.0 ? 8.0 + 16.0 : 8.0; };
         if (const auto* coat = std::get_if<Coat>(&statement.action))
-            shift(coat->thicknessUm);
+            bytes = shift(coat->thicknessUm);
         else if (const auto* erode = std::get_if<Erode>(&statement.action))
-            shift(erode->thicknessUm);
+            bytes = shift(erode->thicknessUm);
         else if (std::holds_alternative<Grow>(statement.action))
             bytes = 6.0;
         else if (const auto* convert = std::get_if<Convert>(&statement.action))
@@ -68,6 +73,87 @@ double workingBytesPerVoxel(const Program& program, const VolumeScale& scale) {
         most = std::max(most, bytes);
     }
     return most;
+}
+
+// The nodes that a band around a surface needs: leaves of 8³ voxels, and above them nodes of 128³ and 4096³.
+struct BandNodes {
+    double leaves = 0.0, lower = 0.0, upper = 0.0;
+};
+
+// Blocks of 8³ voxels by their place in a box, one bit each.
+class BlockMarks {
+  public:
+    BlockMarks(const Imath::V3i& low, const Imath::V3i& high)
+        : low_(low), size_(high - low + Imath::V3i(1)),
+          marks_(std::size_t(size_.x) * std::size_t(size_.y) * std::size_t(size_.z)) {}
+
+    void mark(const Imath::V3i& block) {
+        const Imath::V3i c = block - low_;
+        marks_[(std::size_t(c.x) * std::size_t(size_.y) + std::size_t(c.y)) * std::size_t(size_.z) + std::size_t(c.z)] =
+            true;
+    }
+
+    BandNodes nodes() const {
+        BandNodes nodes;
+        std::set<std::array<int, 3>> lower, upper;
+        std::size_t at = 0;
+        for (int x = 0; x < size_.x; ++x)
+            for (int y = 0; y < size_.y; ++y)
+                for (int z = 0; z < size_.z; ++z, ++at)
+                    if (marks_[at]) {
+                        const Imath::V3i b = low_ + Imath::V3i(x, y, z);
+                        nodes.leaves += 1.0;
+                        lower.insert({b.x >> 4, b.y >> 4, b.z >> 4});
+                        upper.insert({b.x >> 9, b.y >> 9, b.z >> 9});
+                    }
+        nodes.lower = static_cast<double>(lower.size());
+        nodes.upper = static_cast<double>(upper.size());
+        return nodes;
+    }
+
+  private:
+    Imath::V3i low_, size_;
+    std::vector<bool> marks_;
+};
+
+// Marks the blocks that segments across the surface touch, from so many voxels inside to so many outside; a sheet has
+// its back and its band behind it.
+BandNodes bandNodes(const SurfaceMesh& surface, double voxelSize, double inside, double outside) {
+    Imath::Box3f box;
+    for (const Imath::V3f& p : surface.positions)
+        box.extendBy(p);
+    if (box.isEmpty())
+        return {};
+    const auto blockOf = [voxelSize](const Imath::V3d& p) {
+        return Imath::V3i(int(std::floor(p.x / voxelSize + 0.5)) >> 3, int(std::floor(p.y / voxelSize + 0.5)) >> 3,
+                          int(std::floor(p.z / voxelSize + 0.5)) >> 3);
+    };
+    const double behind = surface.closed ? inside : sheetBackVoxels + outside;
+    const Imath::V3d margin((std::max(behind, outside) + 8.0) * voxelSize);
+    BlockMarks marks(blockOf(Imath::V3d(box.min) - margin), blockOf(Imath::V3d(box.max) + margin));
+    constexpr double step = 1.5; // voxels between samples: a leaf that is touched by less than that is rare
+    const int across = std::max(1, static_cast<int>(std::ceil((behind + outside) / step)));
+    for (const Imath::V3i& t : surface.triangles) {
+        const Imath::V3d a(surface.positions[t[0]]), b(surface.positions[t[1]]), c(surface.positions[t[2]]);
+        const Imath::V3d normal = (b - a).cross(c - a);
+        if (!(normal.length2() > 0.0))
+            continue;
+        const Imath::V3d way = normal.normalized() * voxelSize;
+        // Round a sheet's rim the band goes on to the side.
+        const Imath::V3d along = (b - a).normalized() * (outside * voxelSize),
+                         aside = way.cross(along).normalized() * (outside * voxelSize);
+        const Imath::V3d sides[5] = {Imath::V3d(0.0), along, -along, aside, -aside};
+        const double longest = std::max({(b - a).length(), (c - a).length(), (c - b).length()}) / voxelSize;
+        const int n = std::clamp(static_cast<int>(std::ceil(longest / step)), 1, 4096);
+        for (int i = 0; i <= n; ++i)
+            for (int j = 0; i + j <= n; ++j) {
+                const Imath::V3d p = a + (b - a) * (double(i) / n) + (c - a) * (double(j) / n);
+                for (int k = 0; k <= across; ++k)
+                    for (int side = 0; side < (surface.closed ? 1 : 5); ++side)
+                        marks.mark(blockOf(p + sides[side] + way * (outside - (behind + outside) * k / across)));
+            }
+    }
+    return marks.nodes();
 }
 
 } // namespace
@@ -98,11 +184,14 @@ Budget estimateBudget(const Program& program, const SurfaceMesh& surface, const 
     // A sheet's back and front both carry a band.
     const double sides = surface.closed ? 1.0 : 2.0;
     const double area = sides * surface.area() / (scale.voxelSize * scale.voxelSize);
-    const double width = interiorBand + exteriorBand;
-    budget.activeVoxels = area * width;
-    budget.allocatedVoxels = area * (width + 12.0);
-    constexpr double bytesPerValue = 4.0 * 1.03; // a leaf's masks and node are 3 % of its values
-    budget.volumeBytes = budget.allocatedVoxels * bytesPerValue * (levelSets + 1.0);
+    budget.activeVoxels = area * (interiorBand + exteriorBand);
+    const BandNodes nodes = bandNodes(surface, scale.voxelSize, interiorBand, exteriorBand);
+    budget.allocatedVoxels = 512.0 * nodes.leaves;
+    // Of OpenVDB's trees: a leaf's values and mask, and the tables of 16³ and 32³ children above them.
+    constexpr double bytesPerLeaf = 2048.0 + 64.0 + 40.0, bytesPerLower = 4096.0 * 8.0 + 1024.0 + 24.0,
+                     bytesPerUpper = 32768.0 * 8.0 + 8192.0 + 24.0;
+    budget.volumeBytes =
+        (nodes.leaves * bytesPerLeaf + nodes.lower * bytesPerLower + nodes.upper * bytesPerUpper) * (levelSets + 1.0);
     const double texels = static_cast<double>(mapResolution) * mapResolution;
     const double bytesPerTexel = 4.0 + 12.0 * levelSets + 16.0 + 12.0;
     budget.mapBytes = texels * bytesPerTexel;

@@ -21,8 +21,8 @@ struct Budget {
 /// before and counts on.
 int mostLevelSets(const Program& program);
 
-/// From the surface's area: a band of w voxels around A voxels² of surface holds A w active voxels, in leaves that
-/// reach 8 · E(|n_x| + |n_y| + |n_z|) = 12 voxels further.
+/// From the surface: a band of w voxels around A voxels² of surface holds A w active voxels. The leaves that hold them,
+/// and the nodes above those, are counted along lines across the surface.
 Budget estimateBudget(const Program& program, const SurfaceMesh& surface, const VolumeScale& scale, int mapResolution);
 
 } // namespace patina
