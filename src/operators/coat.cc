@@ -4,6 +4,7 @@
 #include "volume/leaf_lattice.h"
 #include "volume/material_ids.h"
 #include "volume/nest_grids.h"
+#include "volume/open_air.h"
 
 #include <tbb/parallel_for.h>
 
@@ -14,8 +15,9 @@ namespace patina {
 OperationReport coat(Workpiece& work, const std::string& material, double thicknessUm, const ThicknessMap* map,
                      Progress& progress) {
     OperationReport report;
-    const ShiftField field = makeShiftField(work, thicknessUm, map, true, report, progress);
+    ShiftField field = makeShiftField(work, thicknessUm, map, true, report, progress);
     LayerVolume& volume = work.volume;
+    excludeClosedAir(volume, OpenAir(volume), field.thickness);
     const bool extends = volume.layerCount() > 0 && volume.layers().back() == material;
     if (!extends)
         volume.pushLayer(material);

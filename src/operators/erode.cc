@@ -2,6 +2,7 @@
 
 #include "operators/interface_foot.h"
 #include "operators/nest_layers.h"
+#include "operators/sealed_erosion.h"
 #include "operators/shift_field.h"
 #include "operators/slope_reader.h"
 #include "volume/interior_band.h"
@@ -12,6 +13,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
 #include <optional>
 
 namespace patina {
@@ -34,6 +38,38 @@ double newSurface(const std::vector<float*>& nest, openvdb::Index voxel, double 
     return surface + budget / metalHardness;
 }
 
+// The same for a whole leaf, layer by layer in plain loops.
+void walkDown(const std::vector<float*>& nest, const FloatLeaf& active, const LayerHardness& hardness,
+              double metalHardness, float* budget, float* surface) {
+    const float* top = nest.back();
+    forActive(active, [&](openvdb::Index pos) { surface[pos] = top[pos]; });
+    for (std::size_t k = nest.size() - 1; k >= 1; --k) {
+        const float* below = nest[k - 1];
+        const auto costs = static_cast<float>(hardness[k - 1]), gives = 1.f / costs;
+        forActive(active, [&](openvdb::Index pos) {
+            const float from = surface[pos], left = budget[pos], cost = (below[pos] - from) * costs;
+            const bool through = cost < left;
+            surface[pos] = through ? below[pos] : from + left * gives;
+            budget[pos] = through ? left - cost : 0.f;
+        });
+    }
+    const auto gives = static_cast<float>(1.0 / metalHardness);
+    forActive(active, [&](openvdb::Index pos) { surface[pos] += budget[pos] * gives; });
+}
+
+// A budget goes furthest in the softest of the layers, and least far in the hardest.
+ShiftReach reachOf(const LayerHardness& hardness, std::optional<double> metalHardness) {
+    ShiftReach reach;
+    const auto also = [&](double h) {
+        reach.least = std::min(reach.least, 1.0 / h);
+        reach.most = std::max(reach.most, 1.0 / h);
+    };
+    std::for_each(hardness.begin(), hardness.end(), also);
+    if (metalHardness)
+        also(*metalHardness);
+    return reach;
+}
+
 // g(p) t of the same t everywhere, where the whole stack is a small part of a voxel: p is the model's closest point.
 class EvenShift {
   public:
@@ -42,29 +78,52 @@ class EvenShift {
           lattice_(leaves_), inverseVoxelSize_(static_cast<float>(1.0 / work.volume.scale().voxelSize)),
           thickness_(static_cast<float>(thickness)), sampler_(work.volume.grids()) {}
 
-    // Fills budget[position] for the active voxels of leaf n.
+    // Fills budget[position] for the active voxels of leaf n. Within reach of the present and the new surface, and one
+    // cell more, every voxel has its own slope; farther away, where no crossing can come by a shift of this kind, a
+    // group of 2³ shares that of its first voxel (slopes vary by half a percent along a surface).
     void read(std::size_t n, float* budget) const {
         const SlopeReader slopes(lattice_, leaves_, n, inverseVoxelSize_);
         const SurfaceMesh& surface = binding_.surface();
-        std::size_t at = binding_.leafStart(n);
-        forActive(*leaves_[n], [&](openvdb::Index pos) {
+        const FloatLeaf& leaf = *leaves_[n];
+        const float* phi = leaf.buffer().data();
+        // First all feet, then all slopes: the triangles come from all over the memory, and wait for one another less.
+        std::array<Imath::V3f, FloatLeaf::SIZE> foot;
+        std::array<std::uint16_t, FloatLeaf::SIZE> own;
+        const bool back = binding_.hasBack(); // which takes nothing
+        std::size_t owners = 0, at = binding_.leafStart(n);
+        forActive(leaf, [&](openvdb::Index pos) {
             const SurfacePoint& under = binding_.at(at++);
-            budget[pos] = 0.f;
-            if (under.triangle < 0)
+            const openvdb::Index first = pos & ~openvdb::Index(firstOfGroup);
+            const bool shares = !back && first != pos && isFar(phi[pos]) && leaf.isValueOn(first) &&
+                                isFar(phi[first]) && (phi[pos] > 0.f) == (phi[first] > 0.f);
+            budget[pos] = shares ? shared : 0.f;
+            if (shares || under.triangle < 0)
                 return;
             const Imath::V3i& corners = surface.triangles[under.triangle];
             const Imath::V3f& a = surface.positions[corners[0]];
-            const Imath::V3f p = (a + (surface.positions[corners[1]] - a) * under.u +
-                                  (surface.positions[corners[2]] - a) * under.v) *
-                                 inverseVoxelSize_;
-            float slope = slopes.at(p);
+            foot[owners] =
+                (a + (surface.positions[corners[1]] - a) * under.u + (surface.positions[corners[2]] - a) * under.v) *
+                inverseVoxelSize_;
+            own[owners++] = static_cast<std::uint16_t>(pos);
+        });
+        for (std::size_t i = 0; i < owners; ++i) {
+            float slope = slopes.at(foot[i]);
             if (slope < 0.f)
-                slope = far(p);
-            budget[pos] = slope * thickness_;
+                slope = far(foot[i]);
+            budget[own[i]] = slope * thickness_;
+        }
+        forActive(leaf, [&](openvdb::Index pos) {
+            if (budget[pos] == shared)
+                budget[pos] = budget[pos & ~openvdb::Index(firstOfGroup)];
         });
     }
 
   private:
+    static constexpr openvdb::Index firstOfGroup = 64 + 8 + 1;
+    static constexpr float shared = -1.f;
+
+    bool isFar(float phi) const { return std::abs(phi) * inverseVoxelSize_ > 2.f + thickness_ * inverseVoxelSize_; }
+
     // A foot more than a leaf away, in a wide band.
     float far(const Imath::V3f& p) const {
         Imath::V3d gradient;
@@ -95,20 +154,28 @@ OperationReport erode(Workpiece& work, double thicknessUm, const ThicknessMap* m
             report.grewBand = true;
     }
     progress.checkpoint();
+    // Without hardness every layer costs its thickness, and the walk down is one sum.
+    const bool walk = !hardness.empty() || metalHardness.value_or(1.0) != 1.0;
+    const ShiftReach reach = walk ? reachOf(hardness, metalHardness) : ShiftReach();
+    const OpenAir air(volume);
     std::optional<EvenShift> even;
     ShiftField field;
-    if (!map && thickness <= voxelSize && isThinStack(volume))
+    std::vector<float> rises; // where closed air is behind a wall
+    if (!map && thickness * reach.most <= voxelSize && isThinStack(volume) && !air.anyClosed()) {
         even.emplace(work, thickness);
-    else
-        field = makeShiftField(work, thicknessUm, map, false, report, progress);
+    } else {
+        field = makeShiftField(work, thicknessUm, map, false, report, progress, reach);
+        if (air.anyClosed())
+            rises = sealedRise(work, air, thickness, map, progress);
+    }
 
     NestGrids& grids = volume.grids();
     const std::size_t layers = grids.interfaces.size();
     // The budgets of all leaves are read from the surface as it is before any leaf of it changes: leaf by leaf where
     // they are in `field`; an even shift reads slopes across leaves, so it keeps them.
-    std::vector<float> budgets;
+    std::unique_ptr<float[]> budgets; // not filled with zeros
     if (even) {
-        budgets.resize(volume.leafCount() * FloatLeaf::SIZE);
+        budgets.reset(new float[volume.leafCount() * FloatLeaf::SIZE]);
         tbb::parallel_for(std::size_t(0), volume.leafCount(),
                           [&](std::size_t n) { even->read(n, &budgets[n * FloatLeaf::SIZE]); });
         even.reset();
@@ -118,38 +185,47 @@ OperationReport erode(Workpiece& work, double thicknessUm, const ThicknessMap* m
     std::vector<std::vector<FloatLeaf*>> leaves{leavesOf(grids.floor().tree())};
     for (auto& interface : grids.interfaces)
         leaves.push_back(leavesOf(interface->tree()));
-    // Without hardness every layer costs its thickness, and the walk down is one sum.
-    const bool walk = !hardness.empty() || metalHardness.value_or(1.0) != 1.0;
     LayerHardness costs = hardness;
     costs.resize(layers, 1.0);
     std::vector<char> changed(leaves[0].size(), 0);
 
-    tbb::parallel_for(std::size_t(0), leaves[0].size(), [&](std::size_t n) {
+    // The new surface c in every voxel of a leaf, not above the old one and, unless the metal goes too, not below the
+    // floor.
+    const auto nestOf = [&](std::size_t n) {
         std::vector<float*> nest;
         for (std::size_t k = 0; k <= layers; ++k)
             nest.push_back(leaves[k][n]->buffer().data());
-        float* const floor = nest[0];
+        return nest;
+    };
+    const auto erodedSurface = [&](std::size_t n, const std::vector<float*>& nest, float* surface) {
+        const float* const floor = nest[0];
         const float* const top = nest[layers];
         const FloatLeaf& active = *leaves[0][n];
-
-        // The new surface c in every voxel, not above the old one and, unless the metal goes too, not below the floor.
-        alignas(64) float surface[FloatLeaf::SIZE];
-        if (!budgets.empty() && !walk) {
-            const float* budget = &budgets[n * FloatLeaf::SIZE];
-            forActive(active, [&](openvdb::Index pos) { surface[pos] = top[pos] + budget[pos]; });
+        if (budgets) {
+            float* budget = &budgets[n * FloatLeaf::SIZE];
+            if (walk)
+                walkDown(nest, active, costs, metalHardness.value_or(1.0), budget, surface);
+            else
+                forActive(active, [&](openvdb::Index pos) { surface[pos] = top[pos] + budget[pos]; });
         } else {
             std::size_t at = work.binding.leafStart(n);
             forActive(active, [&](openvdb::Index pos) {
                 const std::size_t here = at++;
-                const double t = budgets.empty() ? double(field.thickness[here]) : thickness;
-                const double budget =
-                    budgets.empty() ? field.slope[here] * t : double(budgets[n * FloatLeaf::SIZE + pos]);
+                const double t = field.thickness[here], budget = field.slope[here] * t;
                 double c = top[pos];
-                if (budget > 0.0) {
-                    c = walk ? newSurface(nest, pos, budget, costs, metalHardness.value_or(1.0)) : c + budget;
-                    if (!field.distance.empty() && t > voxelSize && !walk) {
-                        const double blend = std::clamp(t / voxelSize - 1.0, 0.0, 1.0);
-                        c += blend * (std::max(double(top[pos]), field.distance[here] + t) - c);
+                const auto spend = [&](double b) {
+                    return walk ? newSurface(nest, pos, b, costs, metalHardness.value_or(1.0)) : c + b;
+                };
+                if (!rises.empty() && air.isSealed(n, pos)) {
+                    c = spend(rises[here]);
+                } else if (budget > 0.0) {
+                    const double thin = spend(budget);
+                    const double depth = walk ? (thin - c) * (t / budget) : t; // of phi by its slope
+                    if (!field.distance.empty() && depth > voxelSize) {
+                        const double blend = std::clamp(depth / voxelSize - 1.0, 0.0, 1.0);
+                        c = thin + blend * (std::max(c, field.distance[here] + depth) - thin);
+                    } else {
+                        c = thin;
                     }
                 }
                 surface[pos] = static_cast<float>(c);
@@ -157,14 +233,46 @@ OperationReport erode(Workpiece& work, double thicknessUm, const ThicknessMap* m
         }
         if (!metalHardness)
             forActive(active, [&](openvdb::Index pos) { surface[pos] = std::min(surface[pos], floor[pos]); });
+    };
+    // A front that has come through metal has opened no pore: what is still closed behind it stays as it is.
+    std::optional<OpenAir> stillClosed;
+    if (!rises.empty()) {
+        std::vector<float> level(rises.size());
+        tbb::parallel_for(std::size_t(0), leaves[0].size(), [&](std::size_t n) {
+            alignas(64) float surface[FloatLeaf::SIZE];
+            erodedSurface(n, nestOf(n), surface);
+            std::size_t at = work.binding.leafStart(n);
+            forActive(*leaves[0][n], [&](openvdb::Index pos) { level[at++] = surface[pos]; });
+        });
+        stillClosed.emplace(volume, level);
+    }
+
+    tbb::parallel_for(std::size_t(0), leaves[0].size(), [&](std::size_t n) {
+        const std::vector<float*> nest = nestOf(n);
+        const float* const top = nest[layers];
+        const FloatLeaf& active = *leaves[0][n];
+        alignas(64) float surface[FloatLeaf::SIZE];
+        erodedSurface(n, nest, surface);
+        if (stillClosed)
+            forActive(active, [&](openvdb::Index pos) {
+                if (air.isSealed(n, pos) && stillClosed->isSealed(n, pos))
+                    surface[pos] = top[pos];
+            });
         int eroded = 0;
         forActive(active, [&](openvdb::Index pos) { eroded |= surface[pos] > top[pos]; });
         if (!eroded)
             return;
         changed[n] = 1;
-        for (std::size_t k = metalHardness ? 0 : 1; k <= layers; ++k) {
+        const std::size_t lowest = metalHardness ? 0 : 1;
+        for (std::size_t k = layers + 1; k-- > lowest;) {
             float* phi = nest[k];
-            forActive(active, [&](openvdb::Index pos) { phi[pos] = std::max(phi[pos], surface[pos]); });
+            int cuts = 0;
+            forActive(active, [&](openvdb::Index pos) {
+                cuts |= surface[pos] > phi[pos];
+                phi[pos] = std::max(phi[pos], surface[pos]);
+            });
+            if (!cuts)
+                break; // what lies below is deeper still
         }
     });
 

@@ -15,7 +15,8 @@ using LayerHardness = std::vector<double>;
 ///
 /// `thicknessUm` (real µm, >= 0) times the map, clamped to 0…1, along the current surface's normal. With `hardness`
 /// (one value > 0 per layer) a soft layer goes faster than a hard one: in each voxel the budget is spent walking down
-/// the differences phi_{k-1} - phi_k. Layers that are gone everywhere are dropped.
+/// the differences phi_{k-1} - phi_k; what goes deeper than a voxel is measured by the distance inward. Layers that are gone
+/// everywhere are dropped. The walls of closed pores are reached from outside only (sealedRise).
 ///
 /// \param metalHardness  goes on into the metal (`erode … and metal`), which costs thickness times this hardness:
 ///                       phi_m = max(phi_m, c). `base` stays as it is, the reference of heights.

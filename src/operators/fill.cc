@@ -6,6 +6,7 @@
 #include "volume/leaf_lattice.h"
 #include "volume/material_ids.h"
 #include "volume/nest_grids.h"
+#include "volume/open_air.h"
 
 #include <tbb/parallel_for.h>
 
@@ -31,7 +32,8 @@ OperationReport fill(Workpiece& work, const std::string& material, double height
     if (report.grewBand)
         work.binding.rebind(volume);
     progress.checkpoint();
-    const bool everywhere = !map && !smoothRadius && !work.binding.hasBack();
+    const OpenAir air(volume);
+    const bool everywhere = !map && !smoothRadius && !work.binding.hasBack() && !air.anyClosed();
     std::vector<float> heights;
     if (!everywhere) {
         heights = baseFactors(work, map, report, progress);
@@ -60,8 +62,8 @@ OperationReport fill(Workpiece& work, const std::string& material, double height
             std::size_t at = work.binding.leafStart(n);
             forActive(*base[n], [&](openvdb::Index pos) {
                 const std::size_t here = at++;
-                if (work.binding.at(here).triangle < 0)
-                    return; // the back of a sheet
+                if (work.binding.at(here).triangle < 0 || air.isSealed(n, pos))
+                    return; // the back of a sheet, or where no air comes
                 const float level = (smoothRadius ? smooth[here] : phi0[pos]) - heights[here];
                 filled |= level < phi[pos];
                 phi[pos] = std::min(phi[pos], level);

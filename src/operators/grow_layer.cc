@@ -8,10 +8,12 @@
 #include "volume/leaf_lattice.h"
 #include "volume/material_ids.h"
 #include "volume/nest_grids.h"
+#include "volume/open_air.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace patina {
 
@@ -149,6 +151,7 @@ OperationReport growLayer(Workpiece& work, const std::string& material, double t
     std::vector<std::vector<FloatLeaf*>> leaves;
     for (auto& interface : grids.interfaces)
         leaves.push_back(leavesOf(interface->tree()));
+    const OpenAir air(volume);
     std::vector<char> changed(base.size(), 0);
     tbb::parallel_for(std::size_t(0), base.size(), [&](std::size_t n) {
         std::size_t at = work.binding.leafStart(n);
@@ -157,8 +160,16 @@ OperationReport growLayer(Workpiece& work, const std::string& material, double t
             if (!(shift[here] > 0.f))
                 return;
             changed[n] = 1;
-            for (std::size_t k = lowest[here]; k <= leaves.size(); ++k)
-                leaves[k - 1][n]->buffer().data()[pos] -= shift[here];
+            // Round a pore that is closed the layer grows into those above it: the pore stays as it is.
+            const bool sealed = air.isSealed(n, pos);
+            const float most =
+                sealed ? leaves.back()[n]->buffer().data()[pos] : -std::numeric_limits<float>::infinity();
+            for (std::size_t k = lowest[here]; k <= leaves.size(); ++k) {
+                float& phi = leaves[k - 1][n]->buffer().data()[pos];
+                phi = std::max(phi - shift[here], most);
+            }
+            if (sealed)
+                lowest[here] = 0; // no films to keep
         });
     });
     if (far)

@@ -5,8 +5,11 @@
 #include "volume/leaf_lattice.h"
 #include "volume/material_ids.h"
 #include "volume/nest_grids.h"
+#include "volume/open_air.h"
 
 #include <tbb/parallel_for.h>
+
+#include <algorithm>
 
 namespace patina {
 
@@ -18,6 +21,7 @@ OperationReport offset(Workpiece& work, const std::string& material, double radi
     ClosingOptions options;
     options.radius = radius;
     options.global = global;
+    options.openAirOnly = true;
     const Closing closing = closeInterface(volume, volume.layerCount(), options, progress);
     if (!closing.changed)
         return report;
@@ -30,6 +34,7 @@ OperationReport offset(Workpiece& work, const std::string& material, double radi
         volume.pushLayer(material);
 
     const bool back = work.binding.hasBack();
+    const OpenAir air(volume);
     const auto leaves = leavesOf(volume.grids().surface().tree());
     std::vector<char> changed(leaves.size(), 0);
     tbb::parallel_for(std::size_t(0), leaves.size(), [&](std::size_t n) {
@@ -38,13 +43,16 @@ OperationReport offset(Workpiece& work, const std::string& material, double radi
         bool any = false;
         forActive(*leaves[n], [&](openvdb::Index pos) {
             const std::size_t here = at++;
-            if (!(closing.level[here] < phi[pos]) || (back && work.binding.at(here).triangle < 0))
+            if (!(closing.level[here] < phi[pos]) || (back && work.binding.at(here).triangle < 0) ||
+                air.isSealed(n, pos))
                 return;
             phi[pos] = closing.level[here];
             any = true;
         });
         changed[n] = any;
     });
+    if (!extends && std::find(changed.begin(), changed.end(), 1) == changed.end())
+        volume.removeLayer(volume.layerCount());
     // Where the palette is as it was, only the changed leaves are looked at.
     report.changedIds = updateMaterialIds(volume, 1e-3, &changed);
     return report;

@@ -4,6 +4,8 @@
 #include "operators/coat.h"
 #include "operators/fields/accessibility.h"
 #include "operators/fields/field_grid.h"
+#include "operators/nest_layers.h"
+#include "volume/material_ids.h"
 #include "volume/nest_grids.h"
 
 #include <algorithm>
@@ -45,7 +47,11 @@ OperationReport offsetTangentSphere(Workpiece& work, const std::string& material
     storeField(volume, name, layer, surface, values);
     const SmallerSphere map(makeFieldMap(volume, name), limit);
     volume.grids().fields.erase(name);
-    return coat(work, material, thicknessUm, &map, progress);
+    OperationReport report = coat(work, material, thicknessUm, &map, progress);
+    // Where no sphere is smaller nothing was put on.
+    if (tidyLayers(volume))
+        report.changedIds += updateMaterialIds(volume);
+    return report;
 }
 
 } // namespace patina

@@ -5,16 +5,39 @@
 #include "volume/leaf_lattice.h"
 #include "volume/material_ids.h"
 #include "volume/nest_grids.h"
+#include "volume/open_air.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 
 namespace patina {
 
 namespace {
 
-// phi_k = max(phi_k, phi_0 - h). `heightOf(at, phi)` gives h in the binding's order; a constant one becomes a vector loop.
+// Where there is closed air: what of it is still closed when the cut is done. What the cut opens is cut like the rest.
+template <typename HeightOf>
+std::optional<OpenAir> closedAfterCut(const Workpiece& work, HeightOf heightOf) {
+    const LayerVolume& volume = work.volume;
+    if (!OpenAir(volume).anyClosed())
+        return std::nullopt;
+    const auto base = leavesOf(std::as_const(volume.grids().base->tree()));
+    const auto top = leavesOf(std::as_const(volume.grids().surface().tree()));
+    std::vector<float> cut(work.binding.leafStart(base.size()));
+    tbb::parallel_for(std::size_t(0), base.size(), [&](std::size_t n) {
+        alignas(64) float level[FloatLeaf::SIZE];
+        heightOf(n, *base[n], base[n]->buffer().data(), level);
+        const float* phi = top[n]->buffer().data();
+        std::size_t at = work.binding.leafStart(n);
+        forActive(*base[n], [&](openvdb::Index pos) { cut[at++] = std::max(phi[pos], level[pos]); });
+    });
+    return OpenAir(volume, cut);
+}
+
+// phi_k = max(phi_k, phi_0 - h). `heightOf(at, phi)` gives h in the binding's order; a constant one becomes a vector
+// loop.
 template <typename HeightOf>
 OperationReport cut(Workpiece& work, HeightOf heightOf) {
     OperationReport report;
@@ -25,11 +48,17 @@ OperationReport cut(Workpiece& work, HeightOf heightOf) {
     for (auto& interface : grids.interfaces)
         interfaces.push_back(leavesOf(interface->tree()));
     std::vector<char> changed(base.size(), 0);
+    const std::optional<OpenAir> closed = closedAfterCut(work, heightOf);
 
     tbb::parallel_for(std::size_t(0), base.size(), [&](std::size_t n) {
         alignas(64) float level[FloatLeaf::SIZE];
         const float* phi0 = base[n]->buffer().data();
         heightOf(n, *base[n], phi0, level);
+        if (closed)
+            forActive(*base[n], [&](openvdb::Index pos) {
+                if (closed->isSealed(n, pos))
+                    level[pos] = -std::numeric_limits<float>::infinity();
+            });
         for (std::size_t k = interfaces.size(); k-- > 0;) {
             float* phi = interfaces[k][n]->buffer().data();
             int cuts = 0;

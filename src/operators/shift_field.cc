@@ -14,7 +14,7 @@
 namespace patina {
 
 ShiftField makeShiftField(Workpiece& work, double thicknessUm, const ThicknessMap* map, bool outward,
-                          OperationReport& report, Progress& progress) {
+                          OperationReport& report, Progress& progress, ShiftReach reach) {
     LayerVolume& volume = work.volume;
     const double voxelSize = volume.scale().voxelSize;
     const double drawn = thicknessUm * volume.scale().unitsPerUm(); // scene units
@@ -32,8 +32,9 @@ ShiftField makeShiftField(Workpiece& work, double thicknessUm, const ThicknessMa
     // Where the stack is a small part of a voxel, the model's closest point is the layer's too.
     const bool thickStack = !isThinStack(volume);
     const bool everywhere = !map && !binding.hasBack();
-    const bool needDistance = drawn > voxelSize;
-    const bool needSlope = !(everywhere && drawn >= 2.0 * voxelSize); // from two voxels on the distance alone counts
+    const bool needDistance = drawn * reach.most > voxelSize;
+    const bool needSlope =
+        !(everywhere && drawn * reach.least >= 2.0 * voxelSize); // from two voxels on the distance alone counts
     const bool needFeet = thickStack && (needSlope || !everywhere);
 
     // D(phi_0) is phi_0 itself: recomputed from its crossings it would lose the model's edges.

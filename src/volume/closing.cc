@@ -5,6 +5,7 @@
 #include "volume/closing_balls.h"
 #include "volume/leaf_lattice.h"
 #include "volume/nest_grids.h"
+#include "volume/open_air.h"
 
 #include <Imath/ImathBox.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -124,6 +125,21 @@ std::vector<std::uint8_t> coveredSeeds(const DistanceTransform& surface, const C
     return covered;
 }
 
+// Balls fit into hollows, too, but no operator comes there: what faces closed air is left as it is.
+void dropClosedAir(const DistanceTransform& surface, const OpenAir& air, std::vector<std::uint8_t>& covered) {
+    if (!air.anyClosed())
+        return;
+    const PointBlocks& points = surface.seeds().points;
+    const auto near = [](float v) { return static_cast<unsigned>(std::clamp(int(std::lround(v)), 0, 7)); };
+    for (const PointBlocks::Block& block : points.blocks) {
+        const std::int32_t leaf = surface.levelSet().lattice().at(block.block.x(), block.block.y(), block.block.z());
+        for (std::uint32_t s = block.begin; leaf >= 0 && s < block.end; ++s)
+            if (air.isSealed(static_cast<std::size_t>(leaf),
+                             64 * near(points.x[s]) + 8 * near(points.y[s]) + near(points.z[s])))
+                covered[s] = 0;
+    }
+}
+
 // Marks the blocks with a voxel that may be nearer than `distance` to a covered seed of this block.
 void markAround(const PointBlocks& points, const PointBlocks::Block& block, const std::vector<std::uint8_t>& covered,
                 int reach, float distance, BlockBox& marks) {
@@ -166,7 +182,9 @@ Closing closeInterface(LayerVolume& volume, int k, const ClosingOptions& options
         progress.checkpoint();
         const ClosingBalls balls(surface, radius, options.global, progress);
         const NearestPoints nearestBall(balls.centres());
-        const std::vector<std::uint8_t> covered = coveredSeeds(surface, balls, nearestBall, radius, ignore, progress);
+        std::vector<std::uint8_t> covered = coveredSeeds(surface, balls, nearestBall, radius, ignore, progress);
+        if (options.openAirOnly)
+            dropClosedAir(surface, OpenAir(volume), covered);
 
         // A film's voxel is nearer than r to the surface, at a seed that the closing covers.
         const PointBlocks& points = surface.seeds().points;

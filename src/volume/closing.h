@@ -11,6 +11,7 @@ namespace patina {
 struct ClosingOptions {
     double radius = 0.0;        ///< of the ball, scene units, > 0
     bool global = false;        ///< only balls that can come from outside
+    bool openAirOnly = false;   ///< nothing where only closed air is near the present surface (OpenAir)
     double marginVoxels = 3.0;  ///< the band is grown to hold this much above the closed surface
     double ignoreVoxels = 0.02; ///< films thinner than this are no change
 };
@@ -27,7 +28,7 @@ struct Closing {
 /// \throws RunError where the radius is not positive; Interrupted
 Closing closeInterface(LayerVolume& volume, int k, const ClosingOptions& options, Progress& progress);
 
-/// The same with the usual margins, for `fill … above smooth(radius)`.
+/// The same with the usual margins, for `fill … above smooth(radius)`: only what air reaches.
 /// \param grewBand  set to whether the band grew (bind anew); may be null
 inline std::vector<float> closedLevelSet(LayerVolume& volume, int interface, double radius, bool global,
                                          Progress& progress, double marginVoxels = 3.0, bool* grewBand = nullptr) {
@@ -35,6 +36,7 @@ inline std::vector<float> closedLevelSet(LayerVolume& volume, int interface, dou
     options.radius = radius;
     options.global = global;
     options.marginVoxels = marginVoxels;
+    options.openAirOnly = true;
     Closing closing = closeInterface(volume, interface, options, progress);
     if (grewBand)
         *grewBand = closing.grewBand;

@@ -131,6 +131,29 @@ TEST(Fill, OfTheSameMaterialExtendsItsLayerAndItsMapMultipliesTheHeight) {
         }
 }
 
+TEST(Fill, AboveSmoothOfAVGrooveHoldsTheClosedFormsVolume) {
+    // Below a ball of radius r that touches both walls lie r² (cot phi - pi / 2 + phi) per length.
+    const double r = 6.0;
+    for (const double angle : {30.0, 45.0, 60.0}) {
+        const double phi = angle * M_PI / 180.0, depth = r * std::cos(phi) / std::tan(phi) + 3.0;
+        const test::Height groove = [&](double x, double) {
+            return std::min(0.0, std::abs(x - 30.0) / std::tan(phi) - depth);
+        };
+        const auto piece = test::makePiece(test::relief(60.f, 120, groove), test::voxelScale(), 6.0);
+        auto work = piece->work();
+        fill(work, "dirt", 0.0, nullptr, piece->progress, r);
+        ASSERT_EQ(piece->volume->layerCount(), 1) << angle;
+        const test::Column column(*piece->volume, groove);
+        double area = 0.0;
+        const double half = depth * std::tan(phi), step = half / 200.0;
+        for (double x = 30.0 - half + 0.5 * step; x < 30.0 + half; x += step)
+            area += step * column.thickness(1, x, 30.3);
+        const double expected = r * r * (1.0 / std::tan(phi) - M_PI / 2.0 + phi);
+        // The voxels know the crease to some tenths: 0.7 to 3.3 % of these small areas.
+        EXPECT_NEAR(area, expected, 0.2) << angle;
+    }
+}
+
 TEST(Fill, GrowsTheBandAndSparesTheBackOfASheet) {
     const auto piece = test::makePiece(test::sheet(40.f, 40), test::voxelScale(), 4.0);
     auto work = piece->work();

@@ -1,6 +1,5 @@
 #include "operators/random_operations.h"
-
-#include <tbb/global_control.h>
+#include "support/on_threads.h"
 
 namespace patina {
 namespace {
@@ -12,15 +11,15 @@ TEST(Nest, StaysNestedWithTrueIdsThroughRandomOperations) {
 TEST(Nest, HasTheSameBitsOnAnyNumberOfThreads) {
     for (int sequence = 100; sequence < 106; ++sequence) {
         std::string first;
-        for (const std::size_t threads : {1, 2, 4}) {
-            tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-            const auto piece = test::makePiece(test::sphere(12.f, 3), test::voxelScale(), 8.0);
-            test::randomOperations(*piece, sequence);
-            const std::string hash = contentHash(*piece->volume);
-            if (first.empty())
-                first = hash;
-            ASSERT_EQ(hash, first) << sequence << " on " << threads;
-        }
+        for (const std::size_t threads : {1, 2, 4})
+            test::onThreads(threads, [&] {
+                const auto piece = test::makePiece(test::sphere(12.f, 3), test::voxelScale(), 8.0);
+                test::randomOperations(*piece, sequence);
+                const std::string hash = contentHash(*piece->volume);
+                if (first.empty())
+                    first = hash;
+                ASSERT_EQ(hash, first) << sequence << " on " << threads;
+            });
     }
 }
 

@@ -3,10 +3,10 @@
 #include "base/errors.h"
 
 #include "support/exact_volume.h"
+#include "support/on_threads.h"
 #include "volume/closing.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <map>
 
@@ -71,11 +71,11 @@ std::size_t changedVoxels(LayerVolume volume, double radius) {
 
 TEST(Closing, OfAConvexBodyChangesNoBit) {
     for (const double radius : {2.0, 5.0, 8.0, 16.0}) {
-        EXPECT_EQ(changedVoxels(test::volumeOf(
-                                    [](const Imath::V3d& p) { return (p - Imath::V3d(0.3, 0.1, 0.2)).length() - 22.0; },
-                                    28),
-                                radius),
-                  0u)
+        EXPECT_EQ(
+            changedVoxels(
+                test::volumeOf([](const Imath::V3d& p) { return (p - Imath::V3d(0.3, 0.1, 0.2)).length() - 22.0; }, 28),
+                radius),
+            0u)
             << radius;
         EXPECT_EQ(changedVoxels(test::volumeOf(
                                     [](const Imath::V3d& p) {
@@ -112,27 +112,26 @@ TEST(Closing, OfATurnedBoxChangesNothingOfATenthOfAVoxel) {
 
 TEST(Closing, OfATorusByABallThatFitsChangesNoBit) {
     for (const double radius : {4.0, 8.0, 13.0})
-        EXPECT_EQ(changedVoxels(test::volumeOf(
-                                    [](const Imath::V3d& p) {
-                                        return test::torusDistance(test::turned(p, 0.4), 25.0, 10.0);
-                                    },
-                                    40),
-                                radius),
-                  0u)
+        EXPECT_EQ(
+            changedVoxels(
+                test::volumeOf(
+                    [](const Imath::V3d& p) { return test::torusDistance(test::turned(p, 0.4), 25.0, 10.0); }, 40),
+                radius),
+            0u)
             << radius;
 }
 
 TEST(Closing, HasTheSameBitsOnAnyNumberOfThreads) {
     std::vector<std::vector<float>> results;
-    for (const std::size_t threads : {1, 2, 4}) {
-        tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        LayerVolume volume = test::volumeOf(
-            [](const Imath::V3d& p) { return test::torusDistance(test::turned(p, 0.4), 14.0, 8.0); }, 28);
-        Progress progress;
-        ClosingOptions options;
-        options.radius = 8.0; // the hole's is 6
-        results.push_back(closeInterface(volume, 0, options, progress).level);
-    }
+    for (const std::size_t threads : {1, 2, 4})
+        test::onThreads(threads, [&] {
+            LayerVolume volume = test::volumeOf(
+                [](const Imath::V3d& p) { return test::torusDistance(test::turned(p, 0.4), 14.0, 8.0); }, 28);
+            Progress progress;
+            ClosingOptions options;
+            options.radius = 8.0; // the hole's is 6
+            results.push_back(closeInterface(volume, 0, options, progress).level);
+        });
     EXPECT_EQ(results[0], results[1]);
     EXPECT_EQ(results[0], results[2]);
 }

@@ -1,9 +1,9 @@
 #include "volume/distance.h"
 
 #include "support/exact_volume.h"
+#include "support/on_threads.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 namespace patina {
 namespace {
@@ -75,10 +75,10 @@ TEST(Distance, HasTheSameBitsOnAnyNumberOfThreads) {
         [](const Imath::V3d& p) { return test::boxDistance(test::turned(p, 0.3), {14.0, 9.0, 11.0}); }, 26, 4.0, 7.0);
     Progress progress;
     std::vector<std::vector<float>> results;
-    for (const std::size_t threads : {1, 2, 4}) {
-        tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        results.push_back(distanceToInterface(volume, 0, {}, progress).distance);
-    }
+    for (const std::size_t threads : {1, 2, 4})
+        test::onThreads(threads, [&] {
+            results.push_back(distanceToInterface(volume, 0, {}, progress).distance);
+        });
     EXPECT_EQ(results[0], results[1]);
     EXPECT_EQ(results[0], results[2]);
 }

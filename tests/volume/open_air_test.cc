@@ -1,36 +1,19 @@
 #include "volume/open_air.h"
 
+#include "support/hollow_ball.h"
+#include "support/on_threads.h"
 #include "support/test_surfaces.h"
 #include "volume/nest_grids.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <chrono>
 
 namespace patina {
 namespace {
 
-/// A ball of radius 30 around a hollow of radius `hollow`, which `channel` opens upward where it is above 0.
 std::unique_ptr<test::Piece> hollowBall(float hollow, double channel = 0.0) {
-    SurfaceMesh surface = test::sphere(30.f, 4);
-    const SurfaceMesh inner = test::sphere(hollow, 3);
-    const int first = static_cast<int>(surface.positions.size());
-    for (std::size_t v = 0; v < inner.positions.size(); ++v) {
-        surface.positions.push_back(inner.positions[v]);
-        surface.normals.push_back(-inner.normals[v]);
-    }
-    for (const Imath::V3i& t : inner.triangles)
-        surface.triangles.emplace_back(t[0] + first, t[2] + first, t[1] + first);
-    auto piece = test::makePiece(std::move(surface), test::voxelScale());
-    if (channel > 0.0)
-        for (FloatLeaf* leaf : leavesOf(piece->volume->grids().base->tree()))
-            for (auto voxel = leaf->beginValueAll(); voxel; ++voxel) {
-                const auto c = voxel.getCoord();
-                if (c.z() > 0)
-                    voxel.setValue(std::max(*voxel, static_cast<float>(channel - std::hypot(c.x(), c.y()))));
-            }
-    return piece;
+    return test::hollowBall(30.f, hollow, channel);
 }
 
 TEST(OpenAir, ABallHasNoClosedAir) {
@@ -67,26 +50,38 @@ TEST(OpenAir, AChannelOpensTheHollow) {
 TEST(OpenAir, ExclusionZeroesWhatAirDoesNotReach) {
     const auto piece = hollowBall(3.f);
     std::vector<float> thickness(piece->volume->activeVoxels(), 1.f);
-    const std::size_t excluded = excludeClosedAir(*piece->volume, thickness);
+    const OpenAir air(*piece->volume);
+    const std::size_t excluded = excludeClosedAir(*piece->volume, air, thickness);
     EXPECT_GT(excluded, 113u); // the hollow alone has 4/3 pi 27 voxels
     EXPECT_EQ(static_cast<std::size_t>(std::count(thickness.begin(), thickness.end(), 0.f)), excluded);
-    EXPECT_EQ(excludeClosedAir(*piece->volume, thickness), 0u);
+    EXPECT_EQ(excludeClosedAir(*piece->volume, air, thickness), 0u);
 }
 
 TEST(OpenAir, IsTheSameOnAnyNumberOfThreads) {
     const auto piece = hollowBall(10.f);
     const auto leaves = piece->volume->leafCount();
     std::vector<OpenAir::Mask> first;
-    for (const std::size_t threads : {1, 2, 4}) {
-        tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        const OpenAir air(*piece->volume);
-        std::vector<OpenAir::Mask> masks;
-        for (std::size_t n = 0; n < leaves; ++n)
-            masks.push_back(air.sealed(n));
-        if (first.empty())
-            first = masks;
-        EXPECT_EQ(masks, first) << threads;
-    }
+    for (const std::size_t threads : {1, 2, 4})
+        test::onThreads(threads, [&] {
+            const OpenAir air(*piece->volume);
+            std::vector<OpenAir::Mask> masks;
+            for (std::size_t n = 0; n < leaves; ++n)
+                masks.push_back(air.sealed(n));
+            if (first.empty())
+                first = masks;
+            EXPECT_EQ(masks, first) << threads;
+        });
+}
+
+TEST(OpenAir, OfARegionIsOpenWhereItTouchesASideOfTheBox) {
+    // The box's side cuts the hollow: what is seen of it goes on beyond.
+    const auto piece = hollowBall(8.f);
+    ASSERT_TRUE(OpenAir(*piece->volume).anyClosed());
+    NestGrids& grids = piece->volume->grids();
+    grids.sides = openvdb::CoordBBox(openvdb::Coord(-40, -40, -40), openvdb::Coord(40, 40, 5));
+    EXPECT_FALSE(OpenAir(*piece->volume).anyClosed());
+    grids.sides = openvdb::CoordBBox(openvdb::Coord(-40, -40, -40), openvdb::Coord(40, 40, 15));
+    EXPECT_TRUE(OpenAir(*piece->volume).anyClosed());
 }
 
 TEST(OpenAir, DISABLED_TakesAtMost50MillisecondsForThreeMillionVoxels) {

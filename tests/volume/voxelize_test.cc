@@ -1,11 +1,11 @@
 #include "volume/voxelize.h"
 
 #include "base/errors.h"
+#include "support/on_threads.h"
 #include "support/test_surfaces.h"
 #include "volume/nest_grids.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 namespace patina {
 namespace {
@@ -54,14 +54,14 @@ TEST(Voxelize, AModelThatNoVoxelSeesIsAnErrorOfTheModel) {
 
 TEST(Voxelize, GivesTheSameBitsOnAnyNumberOfThreads) {
     std::string first;
-    for (const std::size_t threads : {1, 2, 4}) {
-        tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        const auto piece = test::makePiece(test::sphere(25.f, 4), test::voxelScale());
-        const std::string hash = contentHash(*piece->volume);
-        if (first.empty())
-            first = hash;
-        EXPECT_EQ(hash, first) << threads;
-    }
+    for (const std::size_t threads : {1, 2, 4})
+        test::onThreads(threads, [&] {
+            const auto piece = test::makePiece(test::sphere(25.f, 4), test::voxelScale());
+            const std::string hash = contentHash(*piece->volume);
+            if (first.empty())
+                first = hash;
+            EXPECT_EQ(hash, first) << threads;
+        });
 }
 
 } // namespace

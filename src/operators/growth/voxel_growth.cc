@@ -7,6 +7,7 @@
 #include "volume/band.h"
 #include "volume/material_ids.h"
 #include "volume/nest_grids.h"
+#include "volume/open_air.h"
 
 #include <tbb/parallel_for.h>
 
@@ -142,6 +143,20 @@ openvdb::FloatGrid::Ptr offsetsOfVoxels(const Workpiece& work, const GrowthLatti
     return offsets;
 }
 
+/// No particle comes where the air is closed to the outside: there the surface keeps its bits.
+void keepClosedAir(const LayerVolume& volume, openvdb::FloatGrid& grown) {
+    const OpenAir air(volume);
+    if (!air.anyClosed())
+        return;
+    const auto before = leavesOf(std::as_const(volume.grids().surface().tree()));
+    const auto after = leavesOf(grown.tree());
+    tbb::parallel_for(std::size_t(0), after.size(), [&](std::size_t n) {
+        for (auto voxel = after[n]->beginValueOn(); voxel; ++voxel)
+            if (air.isSealed(n, voxel.pos()))
+                voxel.setValue(before[n]->getValue(voxel.pos()));
+    });
+}
+
 } // namespace
 
 bool growsInVoxels(const VolumeScale& scale, double thicknessUm, GrowthModel model) {
@@ -233,6 +248,7 @@ VoxelGrowthReport coatByVoxelGrowth(Workpiece& work, const std::string& material
         const auto offsets = offsetsOfVoxels(work, lattice, growth, columns, highest, progress);
         columns = Columns();
         auto grown = interfaceOfVoxels(volume.grids().surface(), *offsets, scale.voxelSize, porous, progress);
+        keepClosedAir(volume, *grown);
         if (!extends)
             volume.pushLayer(material);
         volume.grids().interfaces.back() = grown;

@@ -4,9 +4,9 @@
 
 #include "base/errors.h"
 #include "growth_test_shapes.h"
+#include "support/on_threads.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 namespace patina {
 namespace {
@@ -31,15 +31,15 @@ TEST(GrowthHistory, bitsDoNotDependOnThreads) {
         for (std::size_t i = 0; i < lattice.size(); ++i)
             options.arrival.push_back(0.5f + 0.5f * lattice.normals[i].z);
         std::vector<float> first;
-        for (const std::size_t threads : {1, 2, 4}) {
-            const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-            const GrowthLattice again = surfaceLattice(test::sphere(1.0, 20), 0.02);
-            EXPECT_EQ(again.neighbours, lattice.neighbours);
-            const auto height = growHeights(lattice, options, 7, "threads");
-            if (first.empty())
-                first = height;
-            EXPECT_EQ(height, first) << growthModelName(model) << ", " << threads << " threads";
-        }
+        for (const std::size_t threads : {1, 2, 4})
+            test::onThreads(threads, [&] {
+                const GrowthLattice again = surfaceLattice(test::sphere(1.0, 20), 0.02);
+                EXPECT_EQ(again.neighbours, lattice.neighbours);
+                const auto height = growHeights(lattice, options, 7, "threads");
+                if (first.empty())
+                    first = height;
+                EXPECT_EQ(height, first) << growthModelName(model) << ", " << threads << " threads";
+            });
     }
 }
 
