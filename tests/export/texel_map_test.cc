@@ -1,10 +1,10 @@
 #include "export/texel_map.h"
 
 #include "base/errors.h"
+#include "support/on_threads.h"
 #include "support/test_surfaces.h"
 
 #include <gmock/gmock.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
@@ -198,20 +198,20 @@ TEST(TexelMap, IsTheSameOnAnyNumberOfThreads) {
         if (positionAt(surface, {static_cast<int>(t), 1.f / 3, 1.f / 3}).z < 0.0)
             surface.triangleUvs[t] += Imath::V3i(static_cast<int>(surface.positions.size()));
     std::vector<float> first;
-    for (const std::size_t threads : {1, 2, 4}) {
-        tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        const TexelMap map = makeTexelMap(surface, 128, 8);
-        std::vector<float> all;
-        for (const SurfacePoint& point : map.points)
-            all.insert(all.end(), {float(point.triangle), point.u, point.v});
-        for (const RimTexel& texel : map.rim)
-            all.insert(all.end(), {float(texel.texel), float(texel.shown.triangle), texel.shown.u, texel.shown.v});
-        for (const auto& [to, from] : map.gutter)
-            all.insert(all.end(), {float(to), float(from)});
-        if (first.empty())
-            first = all;
-        EXPECT_EQ(all, first);
-    }
+    for (const std::size_t threads : {1, 2, 4})
+        test::onThreads(threads, [&] {
+            const TexelMap map = makeTexelMap(surface, 128, 8);
+            std::vector<float> all;
+            for (const SurfacePoint& point : map.points)
+                all.insert(all.end(), {float(point.triangle), point.u, point.v});
+            for (const RimTexel& texel : map.rim)
+                all.insert(all.end(), {float(texel.texel), float(texel.shown.triangle), texel.shown.u, texel.shown.v});
+            for (const auto& [to, from] : map.gutter)
+                all.insert(all.end(), {float(to), float(from)});
+            if (first.empty())
+                first = all;
+            EXPECT_EQ(all, first);
+        });
 }
 
 } // namespace

@@ -11,6 +11,7 @@
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 #include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <csignal>
@@ -55,7 +56,9 @@ int runAction(const Action& action, const Options& options) {
     std::signal(SIGTERM, onInterrupt);
     int status = exitStatus(ExitCode::done);
     try {
-        action(console);
+        // In an arena of its own: the default one has no more threads than the machine has cores.
+        tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+        arena.execute([&] { action(console); });
     } catch (const Interrupted& stop) {
         console.error(stop.what());
         status = exitStatus(stop.code());
