@@ -175,6 +175,8 @@ class Run {
         const ThicknessMapPtr map = mapOf(action.map);
         report.operation = coat(work, action.material, action.thicknessUm, map.get(), progress_);
         report.growths = maps_->takeStatistics();
+        for (GrowthStatistics& growth : report.growths)
+            growth.levelUm = growth.levelFactor * action.thicknessUm;
     }
 
     void perform(const Erode& action, StatementReport& report) {

@@ -17,7 +17,9 @@ namespace patina {
 class DistanceTransform {
   public:
     /// \param iso  scene units
-    DistanceTransform(const openvdb::FloatGrid& grid, double voxelSize, double iso = 0.0);
+    /// \param wanted  cells that may have a seed, as makeSurfaceSeeds() takes them; null: all
+    DistanceTransform(const openvdb::FloatGrid& grid, double voxelSize, double iso = 0.0,
+                      const std::vector<std::array<std::uint64_t, 8>>* wanted = nullptr);
 
     const LevelSetBlocks& levelSet() const { return levelSet_; }
     const SurfaceSeeds& seeds() const { return seeds_; }

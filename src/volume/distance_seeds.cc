@@ -120,7 +120,7 @@ SurfacePatch patchAt(const float* at, const float* c, Imath::V3f& p, float nowhe
 }
 
 void seedsOfBlock(const LevelSetBlocks& levelSet, const openvdb::Coord& block, float iso, float voxelsPerUnit,
-                  float nowhere, std::vector<Seed>& seeds) {
+                  float nowhere, const std::uint64_t* wanted, std::vector<Seed>& seeds) {
     float values[padded * padded * padded];
     levelSet.padded(block, padLow, padHigh, values);
     for (float& v : values)
@@ -140,7 +140,9 @@ void seedsOfBlock(const LevelSetBlocks& levelSet, const openvdb::Coord& block, f
                 all &= signs;
                 any |= signs;
             }
-            const unsigned mixed = (any | any >> 1) & ~(all & all >> 1) & 0xff;
+            unsigned mixed = (any | any >> 1) & ~(all & all >> 1) & 0xff;
+            if (wanted)
+                mixed &= static_cast<unsigned>(wanted[i] >> (8 * j)) & 0xff;
             for (int k = 0; k < 8; ++k) {
                 if (!(mixed >> k & 1))
                     continue;
@@ -333,7 +335,8 @@ void sharpenCreases(SurfaceSeeds& seeds) {
 
 } // namespace
 
-SurfaceSeeds makeSurfaceSeeds(const LevelSetBlocks& levelSet, double voxelSize, double iso) {
+SurfaceSeeds makeSurfaceSeeds(const LevelSetBlocks& levelSet, double voxelSize, double iso,
+                              const std::vector<std::array<std::uint64_t, 8>>* wanted) {
     const std::size_t leaves = levelSet.leaves().size();
     std::vector<std::vector<Seed>> found(leaves);
     const auto level = static_cast<float>(iso), voxelsPerUnit = static_cast<float>(1.0 / voxelSize);
@@ -342,7 +345,7 @@ SurfaceSeeds makeSurfaceSeeds(const LevelSetBlocks& levelSet, double voxelSize, 
     tbb::parallel_for(std::size_t(0), leaves, [&](std::size_t n) {
         if (mayCross(levelSet, n, level, near))
             seedsOfBlock(levelSet, openvdb::Coord(levelSet.leaves()[n]->origin() >> 3), level, voxelsPerUnit, nowhere,
-                         found[n]);
+                         wanted ? (*wanted)[n].data() : nullptr, found[n]);
     });
 
     SurfaceSeeds seeds;

@@ -51,7 +51,9 @@ struct SurfaceSeeds {
 
 /// Seeds on the set where the level set's trilinear interpolant is `iso` (scene units). Seeds are in the order of the
 /// grid's leaves and cells. \param voxelSize  scene units
-SurfaceSeeds makeSurfaceSeeds(const LevelSetBlocks& levelSet, double voxelSize, double iso = 0.0);
+/// \param wanted  for each leaf the cells (by their first corner, numbered as voxels) that may have a seed; null: all
+SurfaceSeeds makeSurfaceSeeds(const LevelSetBlocks& levelSet, double voxelSize, double iso = 0.0,
+                              const std::vector<std::array<std::uint64_t, 8>>* wanted = nullptr);
 
 inline Imath::V3f SurfacePatch::foot(const Imath::V3f& w) const {
     if (crease) {

@@ -109,6 +109,8 @@ FigurePanel readPanel(TomlReader& reader, const toml::table& table, const fs::pa
     panel.kind = kindNamed(reader, table);
     panel.label = reader.word(table, "label");
     panel.model = reader.word(table, "model", "statuette");
+    if (panel.model.find('/') != std::string::npos && fs::exists(dataFolder / panel.model))
+        panel.model = (dataFolder / panel.model).string(); // one of the project's own
     panel.options = readOptions(reader, table).over(outer);
     panel.map = reader.word(table, "map", "base_color");
     panel.at = reader.word(table, "at");

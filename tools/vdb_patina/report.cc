@@ -26,7 +26,8 @@ Json describe(const GrowthStatistics& growth) {
             {"skewness", growth.skewness},
             {"coverage", growth.coverage},
             {"density", growth.density},
-            {"patches", growth.patches}};
+            {"patches", growth.patches},
+            {"level_um", growth.levelUm}};
 }
 
 Json describe(const StatementReport& statement) {

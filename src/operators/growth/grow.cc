@@ -159,6 +159,7 @@ GrowthPattern grow(const GrowthLattice& lattice, const GrowthOptions& options, s
 
     pattern.factor.resize(lattice.size(), 0.f);
     const double top = expectedScale(options).top();
+    pattern.statistics.levelFactor = top > 0.0 ? 1.0 / top : 0.0;
     if (top > 0.0)
         std::transform(grown.height.begin(), grown.height.end(), pattern.factor.begin(),
                        [top](float h) { return static_cast<float>(std::clamp(h / top, 0.0, 1.0)); });

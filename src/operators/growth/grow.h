@@ -42,6 +42,11 @@ GrowthPattern grow(const GrowthLattice& lattice, const GrowthOptions& options, s
 std::vector<float> growHeights(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
                                std::string_view label, Progress* progress = nullptr);
 
+/// Where the sample points of ST lie (scene units): no two closer than options.pointSpacing cells in a straight line, and
+/// no place of the surface further than two such spacings from one.
+std::vector<Imath::V3d> samplePoints(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
+                                     std::string_view label);
+
 /// A ballistic layer particle by particle.
 struct GrownParticles {
     std::vector<float> height; ///< of the envelope, levels above `foot`

@@ -73,6 +73,10 @@ double readingWidth(double grain, double pitch) {
     return x <= 0.5 ? grain : x <= 1.0 ? grain * (1.25 - 0.5 * x) : 0.75 * pitch;
 }
 
+double readingShift(double cell, double grain, double pitch) {
+    return 0.25 * cell * std::clamp(2.0 * pitch / grain - 1.0, 0.0, 1.0);
+}
+
 GrowthMap::GrowthMap(const GrowthLattice& lattice, const std::vector<float>& values, double filterWidth,
                      double shift) {
     if (values.size() != lattice.size())

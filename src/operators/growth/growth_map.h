@@ -15,6 +15,10 @@ namespace patina {
 /// again by their own interpolation; below one value to a grain, what makes block means of them. All in one unit.
 double readingWidth(double grain, double pitch);
 
+/// How far a pattern of cells is moved for such a reader, as GrowthMap takes it: a quarter of a cell where he has one
+/// value to a grain, nothing where he has two or more.
+double readingShift(double cell, double grain, double pitch);
+
 /// Reads values of a lattice's cells at any point of the surface: each cell counts by its area times tents over the two
 /// tangential directions of its column, times tents over the angle and the distance between the point and its plane.
 /// Between columns of one direction that is bilinear interpolation. A point with no cell within reach takes the nearest

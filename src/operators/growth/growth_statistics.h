@@ -17,6 +17,8 @@ struct GrowthStatistics {
     double coverage = 0.0;   ///< fraction of the area that is covered at all
     double density = 0.0;    ///< solid below the interface: 1 for compact layers, 0.3 for a ballistic one
     std::size_t patches = 0; ///< connected covered pieces
+    double levelFactor = 0.0; ///< of grow(): the factor of a layer; times the thickness of a coat what it is worth
+    double levelUm = 0.0;     ///< of a coat: what a layer of these heights is worth, real µm
 };
 
 /// Everything but `particles` and `density`.

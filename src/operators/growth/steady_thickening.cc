@@ -5,6 +5,7 @@
 // of all undecided candidates within the spacing, in a few rounds. Nothing depends on what lies farther away than those
 // rounds reach, so a piece of a model has the points of the whole.
 
+#include "operators/growth/grow.h"
 #include "operators/growth/growth_run.h"
 
 #include <tbb/blocked_range.h>
@@ -127,6 +128,17 @@ std::vector<SamplePoint> poissonDisk(const GrowthRun& run, double spacing) {
 }
 
 } // namespace
+
+std::vector<Imath::V3d> samplePoints(const GrowthLattice& lattice, const GrowthOptions& given, std::uint64_t seed,
+                                     std::string_view label) {
+    GrowthOptions options = given;
+    options.model = GrowthModel::steadyThickening;
+    std::vector<Imath::V3d> places;
+    for (const SamplePoint& point : poissonDisk({lattice, options, options.age(), seed, label, nullptr, nullptr},
+                                                options.pointSpacing * lattice.cell))
+        places.push_back(point.position);
+    return places;
+}
 
 GrownHeights growSteadyThickening(const GrowthRun& run) {
     const GrowthLattice& lattice = run.lattice;

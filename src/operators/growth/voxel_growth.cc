@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "operators/growth/cell_lookup.h"
+#include "operators/growth/growth_map.h"
 #include "operators/growth/nest_relief.h"
 #include "operators/growth/voxel_interface.h"
 #include "volume/band.h"
@@ -13,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace patina {
 
@@ -28,6 +30,9 @@ struct Columns {
     std::vector<float> foot;        ///< porous: the level of the history on which the column begins; empty: 0
     LevelOccupancy occupancy;
     bool porous = false;
+    std::unique_ptr<const GrowthMap> smooth; ///< compact: the height between columns, where it runs from one to the next
+
+    static float below(float c) { return c < tie ? std::min(c, 0.f) : c; }
 
     /// c of interfaceOfVoxels() for a voxel `phi` voxels above the surface.
     float offset(int cell, float phi) const {
@@ -35,10 +40,8 @@ struct Columns {
             return phi; // what takes no particles ends at height 0
         const auto i = static_cast<std::size_t>(cell);
         // A voxel's centre may lie on the border of two levels: it belongs to the lower one, whatever rounding says.
-        if (!porous) {
-            const float c = phi - height[i];
-            return c < tie ? std::min(c, 0.f) : c;
-        }
+        if (!porous)
+            return below(phi - height[i]);
         const float thickness = levelVoxels[i];
         if (phi <= 0.f || !(thickness > 0.f))
             return phi; // metal and older layers are one solid level
@@ -67,7 +70,7 @@ VoxelGrowth withRelief(const Workpiece& work, const GrowthLattice& lattice, cons
 }
 
 Columns compactColumns(const GrowthLattice& lattice, const VoxelGrowth& growth, double thicknessVoxels,
-                       VoxelGrowthReport& report, Progress& progress) {
+                       double voxelSize, VoxelGrowthReport& report, Progress& progress) {
     const GrowthPattern now = grow(lattice, growth.options, growth.seed, growth.label, &progress);
     report.statistics = now.statistics;
     std::vector<float> before;
@@ -81,6 +84,14 @@ Columns compactColumns(const GrowthLattice& lattice, const VoxelGrowth& growth, 
     for (std::size_t i = 0; i < lattice.size(); ++i) {
         const double grown = before.empty() ? now.factor[i] : std::max(0.f, now.factor[i] - before[i]);
         columns.height[i] = static_cast<float>(grown * thicknessVoxels * factorAt(growth, i));
+    }
+    // RD stands in columns of its own. Particles of the others find each other: their surface runs from column to
+    // column, as that of cells of one voxel cannot but do, so that finer voxels show the same.
+    // (And columns finer than voxels show as their mean.)
+    const double pitch = voxelSize / growth.magnification;
+    if (growth.options.model != GrowthModel::randomDeposition || lattice.cell < 0.99 * pitch) {
+        columns.smooth = std::make_unique<GrowthMap>(lattice, columns.height, readingWidth(lattice.cell, pitch),
+                                                     readingShift(lattice.cell, lattice.cell, pitch));
     }
     return columns;
 }
@@ -106,13 +117,13 @@ Columns porousColumns(const GrowthLattice& lattice, const VoxelGrowth& growth, c
     return columns;
 }
 
-/// c of every voxel of the band, in voxels.
+/// c of every voxel of the band, in voxels, in a copy of phi_n.
 openvdb::FloatGrid::Ptr offsetsOfVoxels(const Workpiece& work, const GrowthLattice& lattice, const VoxelGrowth& growth,
                                         const Columns& columns, float highest, const Progress& progress) {
     const openvdb::FloatGrid& surface = work.volume.grids().surface();
     const double voxelSize = work.volume.scale().voxelSize;
     const CellLookup lookup(lattice);
-    auto offsets = makeGridLike(surface, surface.background());
+    auto offsets = surface.deepCopy();
     const auto from = leavesOf(surface.tree());
     const auto to = leavesOf(offsets->tree());
     const SurfaceMesh& mesh = work.binding.surface();
@@ -132,11 +143,20 @@ openvdb::FloatGrid::Ptr offsetsOfVoxels(const Workpiece& work, const GrowthLatti
                 continue;
             }
             // Below the surface, too: the end of the column that stands on a voxel belongs to its neighbourhood.
-            int cell = GrowthLattice::noCell;
             const SurfacePoint& under = work.binding.at(at);
-            if (phi > -2.f && under.triangle >= 0)
-                cell = lookup.cellAt(positionAt(mesh, under) * perUnit + nudge, normalAt(mesh, under));
-            offset = columns.offset(cell, phi);
+            if (phi <= -2.f || under.triangle < 0) {
+                offset = columns.offset(GrowthLattice::noCell, phi);
+                continue;
+            }
+            const Imath::V3d position = positionAt(mesh, under) * perUnit, normal = normalAt(mesh, under);
+            if (columns.smooth) {
+                MapPoint point;
+                point.position = position + growth.origin;
+                point.normal = normal;
+                offset = Columns::below(phi - static_cast<float>(columns.smooth->value(point)));
+            } else {
+                offset = columns.offset(lookup.cellAt(position + nudge, normal), phi);
+            }
         }
     });
     progress.checkpoint();
@@ -226,15 +246,14 @@ VoxelGrowthReport coatByVoxelGrowth(Workpiece& work, const std::string& material
         levelVoxels = levels.levelVoxels;
         columns = porousColumns(lattice, withRelief(work, lattice, growth, levelVoxels), levels, report, progress);
     } else {
-        const double top = expectedScale(growth.options).top();
-        levelVoxels = top > 0.0 ? thicknessVoxels / top : 0.0;
-        columns = compactColumns(lattice,
-                                 growth.options.model == GrowthModel::relaxation
-                                     ? withRelief(work, lattice, growth, levelVoxels)
-                                     : growth,
-                                 thicknessVoxels, report, progress);
+        const bool seesRelief = growth.options.model == GrowthModel::relaxation && volume.layerCount() > 0;
+        const double top = seesRelief ? expectedScale(growth.options).top() : 0.0;
+        columns = compactColumns(
+            lattice, top > 0.0 ? withRelief(work, lattice, growth, thicknessVoxels / top) : growth, thicknessVoxels,
+            scale.voxelSize, report, progress);
+        levelVoxels = thicknessVoxels * report.statistics.levelFactor;
     }
-    report.levelUm = levelVoxels / scale.voxelsPerUm();
+    report.statistics.levelUm = levelVoxels / scale.voxelsPerUm();
     float highest = 0.f;
     for (const float height : columns.height)
         highest = std::max(highest, height);
@@ -245,9 +264,9 @@ VoxelGrowthReport coatByVoxelGrowth(Workpiece& work, const std::string& material
             work.binding.rebind(volume);
             report.operation.grewBand = true;
         }
-        const auto offsets = offsetsOfVoxels(work, lattice, growth, columns, highest, progress);
+        const auto grown = offsetsOfVoxels(work, lattice, growth, columns, highest, progress);
         columns = Columns();
-        auto grown = interfaceOfVoxels(volume.grids().surface(), *offsets, scale.voxelSize, porous, progress);
+        interfaceOfVoxels(volume.grids().surface(), *grown, scale.voxelSize, porous, progress);
         keepClosedAir(volume, *grown);
         if (!extends)
             volume.pushLayer(material);

@@ -36,8 +36,7 @@ struct VoxelGrowth {
 
 struct VoxelGrowthReport {
     OperationReport operation;
-    GrowthStatistics statistics; ///< in levels
-    double levelUm = 0.0;        ///< real thickness of a level of the statistics
+    GrowthStatistics statistics; ///< in levels of levelUm
 };
 
 /// Levels (particles above each other) and how thick they are.

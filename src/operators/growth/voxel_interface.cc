@@ -98,19 +98,77 @@ float valueBeside(const Neighbourhood& near, float phi, float c, bool porous) {
     return std::abs(c) <= 1.f ? apart(c) : solid ? -0.5f : 0.5f;
 }
 
+using VoxelMask = std::array<std::uint64_t, 8>;
+
+bool holds(const VoxelMask& mask, openvdb::Index pos) {
+    return mask[pos >> 6] >> (pos & 63) & 1;
+}
+
+/// The voxels of a leaf that lie beside the surface. In a porous layer most have one of two values, told by their side.
+struct BesideSurface {
+    VoxelMask voxels{};
+    VoxelMask usual{}; ///< those of them that have the usual value of their side
+    std::vector<float> values; ///< of the others, scene units, in order
+};
+
+/// Cells near voxels that ask for a distance: the surface within a porous layer is nobody's nearest, and its points
+/// would take more memory than the whole band.
+std::vector<VoxelMask> cellsNearOthers(const std::vector<const FloatLeaf*>& leaves, const LeafLattice& lattice,
+                                       const std::vector<BesideSurface>& beside) {
+    std::vector<VoxelMask> cells(leaves.size());
+    tbb::parallel_for(std::size_t(0), leaves.size(), [&](std::size_t n) {
+        // Rows along z of the leaf and four voxels around it: bit 4 is z = 0.
+        std::uint32_t rows[16][16] = {}, wider[16][16] = {};
+        const openvdb::Coord block(leaves[n]->origin() >> 3);
+        for (int around = 0; around < 27; ++around) {
+            const int a = around / 9 - 1, b = around / 3 % 3 - 1, c = around % 3 - 1;
+            const std::int32_t number = lattice.at(block.x() + a, block.y() + b, block.z() + c);
+            if (number < 0)
+                continue;
+            const FloatLeaf& leaf = *leaves[std::size_t(number)];
+            for (int x = std::max(0, -4 - 8 * a); x < std::min(8, 12 - 8 * a); ++x) {
+                const std::uint64_t others = leaf.getValueMask().getWord<std::uint64_t>(openvdb::Index(x)) &
+                                             ~beside[std::size_t(number)].voxels[std::size_t(x)];
+                for (int y = std::max(0, -4 - 8 * b); y < std::min(8, 12 - 8 * b); ++y) {
+                    const auto row = static_cast<std::uint32_t>(others >> (8 * y) & 0xff);
+                    rows[x + 8 * a + 4][y + 8 * b + 4] |= c < 0 ? row >> 4 : row << (4 + 8 * c);
+                }
+            }
+        }
+        for (auto& plane : rows)
+            for (std::uint32_t& row : plane)
+                for (int i = 0; i < 4; ++i)
+                    row |= row << 1 | row >> 1;
+        for (int x = 0; x < 16; ++x)
+            for (int y = 4; y < 12; ++y)
+                for (int i = -4; i < 4; ++i)
+                    wider[x][y] |= rows[x][y + i] | rows[x][y + i + 1];
+        for (int x = 0; x < 8; ++x) {
+            std::uint64_t word = 0;
+            for (int y = 0; y < 8; ++y) {
+                std::uint32_t row = 0;
+                for (int i = 0; i <= 8; ++i)
+                    row |= wider[x + i][y + 4];
+                word |= std::uint64_t(row >> 4 & 0xff) << (8 * y);
+            }
+            cells[n][std::size_t(x)] = word;
+        }
+    });
+    return cells;
+}
+
 } // namespace
 
-openvdb::FloatGrid::Ptr interfaceOfVoxels(const openvdb::FloatGrid& surface, const openvdb::FloatGrid& offsets,
-                                          double voxelSizeUnits, bool porous, const Progress& progress) {
+void interfaceOfVoxels(const openvdb::FloatGrid& surface, openvdb::FloatGrid& grid, double voxelSizeUnits, bool porous,
+                       const Progress& progress) {
     const auto voxelSize = static_cast<float>(voxelSizeUnits);
     const auto phiLeaves = leavesOf(surface.tree());
-    const auto offsetLeaves = leavesOf(offsets.tree());
+    const auto leaves = leavesOf(grid.tree());
+    const std::vector<const FloatLeaf*> offsetLeaves(leaves.begin(), leaves.end());
     const LeafLattice lattice(phiLeaves);
+    const auto usual = [voxelSize](float c) { return (c <= 0.f ? -particle : 0.5f) * voxelSize; };
 
-    // The voxels beside the surface have their values; the others know their side, and have a distance only in name.
-    auto grown = surface.deepCopy();
-    const auto grownLeaves = leavesOf(grown->tree());
-    std::vector<std::array<std::uint64_t, 8>> beside(phiLeaves.size());
+    std::vector<BesideSurface> beside(phiLeaves.size());
     std::vector<char> hasSurface(phiLeaves.size(), 0);
     tbb::enumerable_thread_specific<std::array<PaddedLeaf, 2>> padded;
     tbb::parallel_for(std::size_t(0), phiLeaves.size(), [&](std::size_t n) {
@@ -118,82 +176,102 @@ openvdb::FloatGrid::Ptr interfaceOfVoxels(const openvdb::FloatGrid& surface, con
             return;
         auto& [phi, offset] = padded.local();
         offset.gather(lattice, offsetLeaves, n, 1.f);
-        beside[n].fill(0);
         bool anySolid = false, anyEmpty = false;
         for (const float c : offset.values) {
             anySolid |= c <= 0.f;
             anyEmpty |= c > 0.f && c != noVoxel;
         }
-        const bool mixed = anySolid && anyEmpty;
-        if (mixed)
-            phi.gather(lattice, phiLeaves, n, 1.f / voxelSize);
-        float* values = grownLeaves[n]->buffer().data();
+        if (!anySolid || !anyEmpty)
+            return;
+        phi.gather(lattice, phiLeaves, n, 1.f / voxelSize);
+        const float* phiValues = phiLeaves[n]->buffer().data();
+        BesideSurface& here = beside[n];
         forActive(*phiLeaves[n], [&](openvdb::Index pos) {
             const std::size_t centre = PaddedLeaf::at(pos);
-            const float c = offset.values[centre];
-            if (mixed) {
-                const Neighbourhood near(phi, offset, centre);
-                if (near.isMixed()) {
-                    const float value = valueBeside(near, phi.values[centre], c, porous) * voxelSize;
-                    values[pos] = value == phi.values[centre] * voxelSize ? values[pos] : value;
-                    beside[n][pos >> 6] |= std::uint64_t(1) << (pos & 63);
-                    hasSurface[n] = 1;
-                    return;
-                }
-            }
-            values[pos] = std::copysign(std::clamp(std::abs(c), 1.f, 1.5f), c <= 0.f ? -1.f : 1.f) * voxelSize;
+            const Neighbourhood near(phi, offset, centre);
+            if (!near.isMixed())
+                return;
+            const float c = offset.values[centre], p = phi.values[centre];
+            float value = valueBeside(near, p, c, porous) * voxelSize;
+            if (value == p * voxelSize)
+                value = phiValues[pos];
+            const std::uint64_t bit = std::uint64_t(1) << (pos & 63);
+            here.voxels[pos >> 6] |= bit;
+            if (value == usual(c))
+                here.usual[pos >> 6] |= bit;
+            else
+                here.values.push_back(value);
         });
+        here.values.shrink_to_fit();
+        hasSurface[n] = !here.values.empty() ||
+                        std::any_of(here.voxels.begin(), here.voxels.end(), [](std::uint64_t w) { return w != 0; });
     });
     progress.checkpoint();
-    if (std::find(hasSurface.begin(), hasSurface.end(), 1) == hasSurface.end())
-        return surface.deepCopy();
+    const bool anySurface = std::find(hasSurface.begin(), hasSurface.end(), 1) != hasSurface.end();
+
+    // The voxels beside the surface get their values; the others know their side, and have a distance only in name.
+    tbb::parallel_for(std::size_t(0), leaves.size(), [&](std::size_t n) {
+        const float* phi = phiLeaves[n]->buffer().data();
+        float* values = leaves[n]->buffer().data();
+        std::size_t next = 0;
+        forActive(*phiLeaves[n], [&](openvdb::Index pos) {
+            const float c = values[pos];
+            if (!anySurface)
+                values[pos] = phi[pos];
+            else if (!holds(beside[n].voxels, pos))
+                values[pos] = std::copysign(std::clamp(std::abs(c), 1.f, 1.5f), c <= 0.f ? -1.f : 1.f) * voxelSize;
+            else
+                values[pos] = holds(beside[n].usual, pos) ? usual(c) : beside[n].values[next++];
+        });
+        std::vector<float>().swap(beside[n].values);
+    });
+    if (!anySurface)
+        return;
 
     // Distances are sought to a level a hair off zero: the sharp creases that belong to level zero alone would take
     // most of the time among the corners of particles, and mean nothing there.
-    const DistanceTransform transform(*grown, voxelSizeUnits, porous ? 1e-5 * voxelSizeUnits : 0.0);
+    std::vector<VoxelMask> cells;
+    if (porous)
+        cells = cellsNearOthers(phiLeaves, lattice, beside);
+    const DistanceTransform transform(grid, voxelSizeUnits, porous ? 1e-5 * voxelSizeUnits : 0.0,
+                                      porous ? &cells : nullptr);
+    std::vector<VoxelMask>().swap(cells);
     progress.checkpoint();
     // Where nothing was put, phi_n keeps its bits: a distance found anew is off by the chord of a curved surface.
     const float slack = 1e-2f * voxelSize;
-    auto result = surface.deepCopy();
-    const auto resultLeaves = leavesOf(result->tree());
     tbb::enumerable_thread_specific<NearestInBlock> scratch;
-    tbb::parallel_for(std::size_t(0), resultLeaves.size(), [&](std::size_t n) {
+    tbb::parallel_for(std::size_t(0), leaves.size(), [&](std::size_t n) {
         if (progress.cancelled())
             return;
-        std::uint64_t wanted[8] = {};
-        bool any = false;
         const FloatLeaf& leaf = *phiLeaves[n];
-        forActive(leaf, [&](openvdb::Index pos) {
-            const std::uint64_t bit = std::uint64_t(1) << (pos & 63);
-            if (!(beside[n][pos >> 6] & bit)) {
-                wanted[pos >> 6] |= bit;
-                any = true;
-            }
-        });
+        VoxelMask wanted{};
+        bool any = false;
+        for (openvdb::Index w = 0; w < 8; ++w) {
+            wanted[w] = leaf.getValueMask().getWord<std::uint64_t>(w) & ~beside[n].voxels[w];
+            any |= wanted[w] != 0;
+        }
         const openvdb::Coord block(leaf.origin() >> 3);
         NearestInBlock& near = scratch.local();
         if (any) {
             SearchWindow window;
-            window.mask = wanted;
+            window.mask = wanted.data();
             transform.nearest(block, window, near);
         }
-        const float* side = grownLeaves[n]->buffer().data();
-        float* values = resultLeaves[n]->buffer().data();
+        const float* phi = leaf.buffer().data();
+        float* values = leaves[n]->buffer().data();
         forActive(leaf, [&](openvdb::Index pos) {
-            if (!(wanted[pos >> 6] >> (pos & 63) & 1)) {
-                values[pos] = std::min(values[pos], side[pos]);
+            if (!holds(wanted, pos)) {
+                values[pos] = std::min(phi[pos], values[pos]);
                 return;
             }
-            float value = side[pos];
+            float value = values[pos];
             if (near.point[pos] >= 0)
                 value = std::copysign(
-                    transform.toFoot(block, static_cast<int>(pos), near.point[pos]).length() * voxelSize, side[pos]);
-            if (value < values[pos] - slack)
-                values[pos] = value;
+                    transform.toFoot(block, static_cast<int>(pos), near.point[pos]).length() * voxelSize, value);
+            values[pos] = value < phi[pos] - slack ? value : phi[pos];
         });
     });
     progress.checkpoint();
-    return result;
 }
 
 } // namespace patina

@@ -10,12 +10,13 @@ namespace patina {
 /// makes no terraces on slanted surfaces.
 ///
 /// \param surface  phi_n, scene units
-/// \param offsets  of the same topology, in voxels: c = phi_n - h, where h is the height above phi_n at which the
+/// \param grid     a copy of phi_n that holds c instead, in voxels, and becomes phi_{n+1}: c = phi_n - h, where h is the height above phi_n at which the
 ///                 voxel's own column ends. Solid: c <= 0. What lies deeper in the metal than the layer's foot has
 ///                 h = 0.
 /// \param voxelSize  scene units, exactly as in VolumeScale
 /// \param porous   h is then the top of a solid voxel's own level, the bottom of an empty one's
-/// \return phi_{n+1} <= phi_n, of the same topology; where nothing was put, the bits of phi_n
+/// Leaves phi_{n+1} <= phi_n in `grid`; where nothing was put, the bits of phi_n. Works in place: besides the grid it
+/// needs the voxels beside the surface and, while distances are found, the surface's points near the others.
 ///
 /// A voxel next to the new surface (its 3x3x3 holds both solid and empty voxels) gets
 ///   c            where its neighbourhood is one compact piece: all solid voxels lower than all empty ones, or column
@@ -24,7 +25,7 @@ namespace patina {
 ///   ±0.5         in a porous layer (by which updateMaterialIds() knows a pore),
 /// at least 0.02 in size. All others get their true distance to the surface that these make, which moves no
 /// crossing.
-openvdb::FloatGrid::Ptr interfaceOfVoxels(const openvdb::FloatGrid& surface, const openvdb::FloatGrid& offsets,
-                                          double voxelSize, bool porous, const Progress& progress);
+void interfaceOfVoxels(const openvdb::FloatGrid& surface, openvdb::FloatGrid& grid, double voxelSize, bool porous,
+                       const Progress& progress);
 
 } // namespace patina

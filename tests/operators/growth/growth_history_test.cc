@@ -71,6 +71,56 @@ TEST(GrowthHistory, depositsOfAnEarlierStepAreThoseOfTheLater) {
     }
 }
 
+TEST(GrowthHistory, whatHasGrownSinceAStepIsTheRestOfIt) {
+    const GrowthLattice lattice = surfaceLattice(test::sphere(1.0, 20), 0.02);
+    const GrowthOptions options = at(GrowthModel::ballisticDeposition, 10, 20);
+    const auto all = growParticles(lattice, options, 7, "since");
+    const auto early = growParticles(lattice, at(GrowthModel::ballisticDeposition, 4, 20), 7, "since");
+    const auto late = growParticles(lattice, options, 7, "since", nullptr, 4.0);
+    EXPECT_EQ(early.statistics.particles + late.statistics.particles, all.statistics.particles);
+    EXPECT_GT(early.statistics.particles, 3 * lattice.size());
+    EXPECT_EQ(late.foot, early.height);
+    for (std::size_t i = 0; i < lattice.size(); ++i) {
+        ASSERT_EQ(early.height[i] + late.height[i], all.height[i]);
+        for (int level = 1; level <= int(all.height[i]); ++level)
+            ASSERT_EQ(all.occupancy.holds(i, level),
+                      level <= int(early.height[i]) ? early.occupancy.holds(i, level)
+                                                    : late.occupancy.holds(i, level));
+    }
+}
+
+TEST(GrowthHistory, particlesSeeTheReliefThatIsThere) {
+    // A trench six levels deep and a cell wide along a plate.
+    const GrowthLattice plane = flatLattice(64, 64, true);
+    const auto inTrench = [](std::size_t i) { return i % 64 == 20; };
+    for (const GrowthModel model : {GrowthModel::relaxation, GrowthModel::ballisticDeposition}) {
+        GrowthOptions options = at(model, 4, 20);
+        const auto flat = growHeights(plane, options, 3, "relief");
+        options.relief.assign(plane.size(), 2.5f);
+        EXPECT_EQ(growHeights(plane, options, 3, "relief").size(), flat.size());
+        if (model == GrowthModel::ballisticDeposition) {
+            EXPECT_EQ(growHeights(plane, options, 3, "relief"), flat); // an even layer is no relief
+        }
+        for (std::size_t i = 0; i < plane.size(); ++i)
+            options.relief[i] = inTrench(i) ? 0.f : 6.f;
+        const auto grown = growHeights(plane, options, 3, "relief");
+        double trench = 0.0, beside = 0.0, far = 0.0;
+        for (std::size_t i = 0; i < plane.size(); ++i) {
+            trench += inTrench(i) ? grown[i] / 64.0 : 0.0;
+            beside += i % 64 == 19 || i % 64 == 21 ? grown[i] / 128.0 : 0.0;
+            far += i % 64 == 50 ? grown[i] / 64.0 : 0.0;
+        }
+        if (model == GrowthModel::relaxation) {
+            // It is filled up to its sides, which give what they would have kept.
+            EXPECT_NEAR(trench - 6.0, beside, 1.0);
+            EXPECT_LT(beside, far - 0.5);
+        } else {
+            // What falls in sticks to the walls and hangs over: level with its sides, most of it pores.
+            EXPECT_NEAR(trench - 6.0, beside, 1.0);
+        }
+    }
+}
+
 TEST(GrowthHistory, isNamedBySeedAndLabel) {
     const GrowthLattice plane = flatLattice(64, 64, true);
     for (const GrowthModel model : allModels) {

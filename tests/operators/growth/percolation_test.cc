@@ -144,6 +144,44 @@ TEST(DirectedPercolation, upperLevelsAreNoLargerThanThoseThatBearThem) {
     }
 }
 
+TEST(DirectedPercolation, cellsRiseInProportionToWhatSupportsThem) {
+    // Square patches that do not spread: their corners have three supporters (themselves included), their sides four,
+    // what is within them five. The chance to have risen after a time is 1 - exp(-thickening · supporters / 5 · time).
+    constexpr int side = 512, pitch = 16, patch = 10;
+    const GrowthLattice plane = flatLattice(side, side, true);
+    GrowthOptions options;
+    options.model = GrowthModel::directedPercolation;
+    options.firstSeeds = options.seeding = options.spread = options.blockedSpread = 0.0;
+    options.patch = patch;
+    options.thickening = 0.8;
+    options.step = options.total = 0.5;
+    for (int y = pitch / 2; y < side; y += pitch)
+        for (int x = pitch / 2; x < side; x += pitch)
+            options.seedCells.push_back(y * side + x);
+    const auto height = growHeights(plane, options, 2, "supporters");
+    double risen[6] = {}, all[6] = {};
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
+            const auto at = [&](int i, int j) {
+                return height[std::size_t(((j + side) % side) * side + (i + side) % side)];
+            };
+            if (at(x, y) < 1.f)
+                continue;
+            const int supporters =
+                1 + (at(x - 1, y) > 0.f) + (at(x + 1, y) > 0.f) + (at(x, y - 1) > 0.f) + (at(x, y + 1) > 0.f);
+            all[supporters] += 1.0;
+            risen[supporters] += at(x, y) > 1.f;
+        }
+    const double patches = double(options.seedCells.size());
+    EXPECT_EQ(all[3], 4.0 * patches);
+    EXPECT_EQ(all[4], 4.0 * (patch - 2) * patches);
+    EXPECT_EQ(all[5], double((patch - 2) * (patch - 2)) * patches);
+    for (const int n : {3, 4, 5}) {
+        const double expected = 1.0 - std::exp(-0.8 * n / 5.0 * 0.5);
+        EXPECT_NEAR(risen[n] / all[n], expected, 3.5 * std::sqrt(expected * (1.0 - expected) / all[n])) << n;
+    }
+}
+
 bool moves(double blocked, std::uint64_t seed) {
     const GrowthLattice line = flatLattice(1024, 1, true);
     GrowthOptions options;
@@ -158,9 +196,10 @@ bool moves(double blocked, std::uint64_t seed) {
 TEST(BarabasiStanley, interfacesPinAboveTheKnownFractionOfBlocks) {
     int movingBelow = 0, movingAbove = 0;
     for (std::uint64_t seed = 0; seed < 6; ++seed) {
-        movingBelow += moves(0.455, seed);
+        movingBelow += moves(0.46, seed);
         movingAbove += moves(0.48, seed);
     }
+    RecordProperty("moving_at_0.46", movingBelow);
     EXPECT_GE(movingBelow, 4);
     EXPECT_EQ(movingAbove, 0);
 }

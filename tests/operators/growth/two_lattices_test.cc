@@ -44,9 +44,8 @@ void coatByCells(test::Piece& piece, double thicknessUm, const VoxelGrowth& grow
     auto work = piece.work();
     const GrowthLattice lattice = surfaceLattice(piece.surface, cell);
     const double voxel = piece.volume->scale().voxelSize;
-    const double shift = 0.25 * cell * std::clamp(2.0 * voxel / cell - 1.0, 0.0, 1.0);
     const GrowthMap map(lattice, grow(lattice, growth.options, growth.seed, growth.label).factor,
-                        readingWidth(cell, voxel), shift);
+                        readingWidth(cell, voxel), readingShift(cell, cell, voxel));
     coat(work, "brochantite", thicknessUm, &map, piece.progress);
 }
 
@@ -118,7 +117,7 @@ TEST(TwoLattices, solidMassPerAreaIsTheSameInEveryDirection) {
         const auto piece = test::makePiece(test::sphere(float(radius), 5), test::voxelScale(), porous ? 40.0 : 14.0);
         growOn(*piece, 10.0, growthOf(model, 20, 20), 1.0);
         const StackProbe probe(*piece->volume);
-        double sum[3] = {}, count[3] = {};
+        double sum[3] = {}, count[3] = {}, envelope[3] = {};
         const Imath::V3d kinds[3] = {{1, 0, 0}, Imath::V3d(1, 1, 0).normalized(), Imath::V3d(1, 1, 1).normalized()};
         for (const Imath::V3i& t : piece->surface.triangles) {
             const auto& at = piece->surface.positions;
@@ -128,7 +127,7 @@ TEST(TwoLattices, solidMassPerAreaIsTheSameInEveryDirection) {
             for (int k = 0; k < 3; ++k)
                 if (c.dot(kinds[k]) > 0.97) {
                     double um = 0.0;
-                    probe.read(n * radius, n, &um);
+                    envelope[k] += probe.read(n * radius, n, &um).height;
                     sum[k] += um;
                     count[k] += 1.0;
                 }
@@ -137,24 +136,26 @@ TEST(TwoLattices, solidMassPerAreaIsTheSameInEveryDirection) {
         const double axis = sum[0] / count[0], edge = sum[1] / count[1] / axis, corner = sum[2] / count[2] / axis;
         RecordProperty(name + "_edge", std::to_string(edge));
         RecordProperty(name + "_corner", std::to_string(corner));
-        EXPECT_NEAR(edge, 1.0, porous ? 0.03 : 0.02) << name;
-        EXPECT_NEAR(corner, 1.0, porous ? 0.03 : 0.02) << name;
+        if (porous) {
+            // Columns are aligned with the surface, but levels stand on cells of other areas: less dense on slants.
+            for (int k = 0; k < 3; ++k)
+                RecordProperty(std::string("density_") + std::to_string(k), std::to_string(sum[k] / envelope[k]));
+            EXPECT_NEAR(sum[0] / envelope[0], 0.36, 0.05);
+        }
+        EXPECT_NEAR(edge, 1.0, 0.02) << name;
+        EXPECT_NEAR(corner, 1.0, 0.02) << name;
     }
 }
 
-/// Distance at which the autocorrelation over a plate falls to 1/e, in sides of the plate: of the thickness, or of the
-/// envelope's height.
-double correlationLength(const test::Piece& piece, double side, bool envelope) {
-    constexpr int n = 160;
+/// Distance at which the autocorrelation of the thickness over a plate falls to 1/e; in sides of the plate.
+double correlationLength(const test::Piece& piece, double side) {
+    constexpr int n = 112;
     const StackProbe probe(*piece.volume);
     std::vector<double> field(n * n);
+    const auto at = [&](int i) { return side * (0.1 + 0.8 * (i + 0.5) / n); };
     for (int y = 0; y < n; ++y)
-        for (int x = 0; x < n; ++x) {
-            double um = 0.0;
-            const auto at = [&](int i) { return side * (0.1 + 0.8 * (i + 0.5) / n); };
-            const auto reading = probe.read({at(x), at(y), 0.0}, {0, 0, 1}, &um);
-            field[std::size_t(y * n + x)] = envelope ? reading.height : um;
-        }
+        for (int x = 0; x < n; ++x)
+            probe.read({at(x), at(y), 0.0}, {0, 0, 1}, &field[std::size_t(y * n + x)]);
     double mean = 0.0;
     for (const double f : field)
         mean += f / (n * n);
@@ -180,27 +181,30 @@ double correlationLength(const test::Piece& piece, double side, bool envelope) {
 
 // One, two and four voxels to a cell, as 256, 512 and 1024 along the longest side are to cells of 1/256 of it.
 TEST(TwoLattices, patternsHaveTheSameGrainAtAnyVoxelSize) {
-    constexpr double side = 32.0;
+    constexpr double side = 24.0;
     for (const GrowthModel model :
          {GrowthModel::relaxation, GrowthModel::ballisticDeposition, GrowthModel::directedPercolation}) {
         VoxelGrowth growth = growthOf(model, 10, 20);
         growth.cubes = false;
         growth.options.firstSeeds = 1e-2;
         growth.options.patch = 4;
-        const bool porous = model == GrowthModel::ballisticDeposition;
         for (const bool byCells : {true, false}) {
+            // Voxels sample the levels of a porous layer: where these are thinner, its top is found a few levels lower or
+            // higher, which adds grain (docs/growth.md).
+            if (!byCells && model == GrowthModel::ballisticDeposition)
+                continue;
             double length[3];
             for (const int n : {0, 1, 2}) {
                 const int fine = 1 << n;
                 VolumeScale scale = test::voxelScale();
                 scale.voxelSize = 1.0 / fine;
-                const double thickness = 8.0, highest = porous && !byCells ? 3.0 * thickness : thickness;
-                const auto piece = test::makePiece(test::sheet(float(side), 16), scale, (highest + 3.0) * fine);
+                const double thickness = 6.0;
+                const auto piece = test::makePiece(test::sheet(float(side), 16), scale, (thickness + 3.0) * fine);
                 if (byCells)
                     coatByCells(*piece, thickness, growth, 1.0);
                 else
                     growOn(*piece, thickness, growth, 1.0);
-                length[n] = side * correlationLength(*piece, side, porous);
+                length[n] = side * correlationLength(*piece, side);
                 RecordProperty(growthModelName(model) + (byCells ? "_cells_" : "_voxels_") + std::to_string(fine),
                                std::to_string(length[n]));
             }

@@ -5,6 +5,9 @@
 #include "growth_test_shapes.h"
 #include "operators/growth/cell_lookup.h"
 #include "operators/growth/voxel_interface.h"
+#include "operators/coat.h"
+#include "operators/growth/nest_relief.h"
+#include "support/temporary_folder.h"
 #include "support/test_surfaces.h"
 #include "volume/material_ids.h"
 #include "volume/nest_grids.h"
@@ -16,6 +19,7 @@
 
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace patina {
 namespace {
@@ -79,7 +83,11 @@ std::vector<double> filledByHeight(const LayerVolume& volume, const std::string&
 TEST(VoxelGrowth, aBallisticLayerOnAPlateHasTheKnownDensity) {
     const auto piece = plateInABox(128, 205);
     const auto report = coatPiece(*piece, 60.0, growthOf(GrowthModel::ballisticDeposition, 60));
-    const auto filled = filledByHeight(*piece->volume, "soot", 12, 116);
+    // Counted in the file.
+    const test::TemporaryFolder folder;
+    writeVolume(*piece->volume, folder / "plate.vdb");
+    const LayerVolume read = readVolume(folder / "plate.vdb");
+    const auto filled = filledByHeight(read, "soot", 12, 116);
     double density = 0.0, total = 0.0;
     for (int z = 100; z < 150; ++z)
         density += filled[std::size_t(z - 1)] / 50.0;
@@ -132,9 +140,9 @@ TEST(VoxelInterface, wholeLevelsOnSlantedPlanesHaveNeitherBiasNorTerraces) {
                 const float level = std::max(0.f, std::ceil(*voxel)); // solid up to `levels`
                 voxel.setValue(level <= float(levels) ? std::min(0.f, *voxel - level) : *voxel - (level - 1.f));
             }
-            const auto grown = interfaceOfVoxels(*grids.base, *offsets, 1.0, true, piece->progress);
+            interfaceOfVoxels(*grids.base, *offsets, 1.0, true, piece->progress);
             piece->volume->pushLayer("soot");
-            piece->volume->grids().interfaces.back() = grown;
+            piece->volume->grids().interfaces.back() = offsets;
             const auto d = deviation(*piece, squareCentre, normal, 12.0, [&](const auto&) { return double(levels); });
             EXPECT_NEAR(d.mean, 0.0, 0.02) << direction << " " << levels;
             EXPECT_LT(d.spread, 0.02) << direction << " " << levels;
@@ -150,9 +158,9 @@ TEST(VoxelInterface, wholeLevelsOnASmallSphereHaveNeitherBiasNorTerraces) {
             const float level = std::max(0.f, std::ceil(*voxel));
             voxel.setValue(level <= float(levels) ? std::min(0.f, *voxel - level) : *voxel - (level - 1.f));
         }
+        interfaceOfVoxels(*grids.base, *offsets, 1.0, true, piece->progress);
         piece->volume->pushLayer("soot");
-        piece->volume->grids().interfaces.back() =
-            interfaceOfVoxels(*grids.base, *offsets, 1.0, true, piece->progress);
+        piece->volume->grids().interfaces.back() = offsets;
         const StackProbe probe(*piece->volume);
         double um = 0.0, sum = 0.0, second = 0.0;
         for (std::size_t i = 0; i < piece->surface.positions.size(); ++i) {
@@ -181,8 +189,9 @@ TEST(VoxelInterface, aColumnAPoreAndAnOverhangOfOneVoxelSurvive) {
     auto offsets = grids.base->deepCopy();
     for (auto voxel = offsets->beginValueOn(); voxel; ++voxel)
         voxel.setValue(*voxel <= 0.f ? *voxel : solid(voxel.getCoord()) ? 0.f : 1.f);
+    interfaceOfVoxels(*grids.base, *offsets, 1.0, true, piece->progress);
     piece->volume->pushLayer("soot");
-    piece->volume->grids().interfaces.back() = interfaceOfVoxels(*grids.base, *offsets, 1.0, true, piece->progress);
+    piece->volume->grids().interfaces.back() = offsets;
     updateMaterialIds(*piece->volume);
     const auto phi = piece->volume->grids().interfaces.back()->getConstAccessor();
     const auto ids = piece->volume->grids().material->getConstAccessor();
@@ -229,6 +238,127 @@ TEST(VoxelGrowth, compactColumnsStandAsHighAsTheirModelSays) {
             EXPECT_NEAR(d.mean, 0.0, model == GrowthModel::directedPercolation ? 0.05 : 0.02) << direction << name;
         }
     }
+}
+
+// A layer so mature that its columns are all but alike: what is left are bias and terraces of the lattice.
+VoxelGrowth mature(GrowthModel model) {
+    VoxelGrowth growth = growthOf(model, 300.0);
+    return growth;
+}
+
+TEST(VoxelGrowth, evenLayersOnSlantedPlanesAndASmallSphereHaveNeitherBiasNorTerraces) {
+    constexpr double t = 5.3;
+    const VoxelGrowth growth = mature(GrowthModel::relaxation);
+    const double expected = t * expectedScale(growth.options).mean / expectedScale(growth.options).top();
+    EXPECT_NEAR(expected, t, 0.04);
+    for (const Imath::V3d& direction : {Imath::V3d(1, 2, 3), Imath::V3d(1, 1, 1), Imath::V3d(0, 1, 3)}) {
+        const Imath::V3d normal = direction.normalized();
+        const auto piece = test::makePiece(test::square(normal, 40.0), test::voxelScale(), 10.0);
+        coatPiece(*piece, t, growth);
+        const auto d = deviation(*piece, squareCentre, normal, 12.0, [&](const auto&) { return expected; });
+        RecordProperty("plane" + std::to_string(int(9 * direction.x + 3 * direction.y + direction.z)),
+                       std::to_string(d.mean) + " " + std::to_string(d.spread));
+        EXPECT_NEAR(d.mean, 0.0, 0.02) << direction;
+        EXPECT_LT(d.spread, 0.02) << direction;
+    }
+    const auto piece = test::makePiece(test::sphere(16.f, 5), test::voxelScale(), 10.0);
+    coatPiece(*piece, t, growth);
+    const StackProbe probe(*piece->volume);
+    double um = 0.0, sum = 0.0, second = 0.0;
+    for (std::size_t i = 0; i < piece->surface.positions.size(); ++i) {
+        probe.read(Imath::V3d(piece->surface.positions[i]), Imath::V3d(piece->surface.normals[i]), &um);
+        sum += um - expected;
+        second += (um - expected) * (um - expected);
+    }
+    const double n = double(piece->surface.positions.size()), mean = sum / n;
+    RecordProperty("sphere", std::to_string(mean) + " " + std::to_string(std::sqrt(second / n - mean * mean)));
+    EXPECT_NEAR(mean, 0.0, 0.02);
+    EXPECT_LT(std::sqrt(second / n - mean * mean), 0.02);
+}
+
+/// Solid voxels of each column of a plate at z = 0.
+std::vector<int> solidByColumn(const LayerVolume& volume, int from, int to) {
+    const auto ids = volume.grids().material->getConstAccessor();
+    const std::int32_t id = volume.findMaterialId("soot");
+    std::vector<int> solid;
+    for (int x = from; x < to; ++x)
+        for (int y = from; y < to; ++y) {
+            solid.push_back(0);
+            for (int z = 1; z < 100; ++z)
+                solid.back() += ids.getValue(openvdb::Coord(x, y, z)) == id;
+        }
+    return solid;
+}
+
+TEST(VoxelGrowth, aBallisticLayerSinceAStepIsTheRestOfItsHistory) {
+    const auto grownFrom = [](double since, double step, double cell) {
+        const auto piece = plateInABox(40, 80);
+        VoxelGrowth growth = growthOf(GrowthModel::ballisticDeposition, 10.0);
+        growth.options.step = step;
+        growth.options.ofFull = true;
+        growth.since = since;
+        growth.cubes = cell == 1.0;
+        coatPiece(*piece, 16.0, growth, cell);
+        return solidByColumn(*piece->volume, 8, 32);
+    };
+    for (const double cell : {1.0, 2.0}) { // cubes, and particles of a size that the script gave
+        const auto whole = grownFrom(0, 10, cell), early = grownFrom(0, 5, cell), late = grownFrom(5, 10, cell);
+        double wrong = 0.0, sum = 0.0, lateSum = 0.0;
+        for (std::size_t i = 0; i < whole.size(); ++i) {
+            wrong += std::abs(whole[i] - early[i] - late[i]);
+            sum += whole[i];
+            lateSum += late[i];
+        }
+        EXPECT_GT(lateSum, 0.4 * sum);
+        if (cell == 1.0) {
+            EXPECT_EQ(wrong, 0.0);
+        } else {
+            // Levels are no whole number of voxels: which of them a voxel's centre lies in is rounded anew.
+            EXPECT_LT(wrong / sum, 0.2);
+            EXPECT_NEAR(lateSum, std::accumulate(whole.begin(), whole.end(), 0.0) -
+                                     std::accumulate(early.begin(), early.end(), 0.0),
+                        0.02 * sum);
+        }
+    }
+}
+
+TEST(VoxelGrowth, layersGrowOnTheReliefAndInTheShadowsThatAreThere) {
+    // A wall eight voxels high on a plate.
+    const auto isWall = [](double x) { return x > 20.5 && x < 25.5; };
+    const test::FunctionMap wall([&](const MapPoint& p) { return isWall(p.position.x) ? 1.0 : 0.0; });
+    const auto piece = test::makePiece(test::sheet(48.f, 48), test::voxelScale(), 30.0);
+    auto work = piece->work();
+    coat(work, "cuprite", 8.0, &wall, piece->progress);
+    const GrowthLattice lattice = surfaceLattice(piece->surface, 1.0);
+    const auto heights = nestHeights(*piece->volume, lattice, Imath::V3d(0.0), 1.0);
+    const NestShadow shadow(*piece->volume);
+    const Imath::V3d up(0, 0, 1), slanting = Imath::V3d(1, 0, 1).normalized();
+    for (std::size_t i = 0; i < lattice.size(); ++i) {
+        const Imath::V3d p(lattice.centres[i]);
+        if (std::min(p.x, p.y) < 4.0 || std::max(p.x, p.y) > 44.0)
+            continue;
+        const bool side = std::abs(p.x - 20.5) < 1.5 || std::abs(p.x - 25.5) < 1.5;
+        if (!side) {
+            ASSERT_NEAR(heights[i], isWall(p.x) ? 8.0 : 0.0, 0.1) << p;
+            ASSERT_FALSE(shadow.falls(p, up, up, 0.5)) << p;
+            // From +x at 45 degrees: to the wall's lee as far as it is high.
+            if (std::abs(p.x - 13.0) > 1.5) {
+                ASSERT_EQ(shadow.falls(p, up, slanting, 0.5), p.x > 13.0 && p.x < 20.5) << p;
+            }
+        }
+    }
+    // Particles stick to the wall's sides: pores at its foot that a layer on a bare plate has not.
+    const auto bare = test::makePiece(test::sheet(48.f, 48), test::voxelScale(), 30.0);
+    VoxelGrowth growth = growthOf(GrowthModel::ballisticDeposition, 4.0);
+    for (test::Piece* on : {piece.get(), bare.get()})
+        coatPiece(*on, 6.0, growth);
+    const StackProbe withWall(*piece->volume), without(*bare->volume);
+    double um[2], a = 0.0, b = 0.0;
+    for (double y = 8.5; y < 40.0; y += 1.0) {
+        a += withWall.read({19.5, y, 0.0}, up, um).height / 32.0;
+        b += without.read({19.5, y, 0.0}, up, um).height / 32.0;
+    }
+    EXPECT_GT(a, b + 2.0);
 }
 
 } // namespace
