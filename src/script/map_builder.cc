@@ -339,8 +339,12 @@ ThicknessMapPtr MapBuilder::buildGrowth(const GrowthCall& call, Progress& progre
     // Grains nobody chose are no finer than a preview shows them: it and the final have one look. What the script
     // gave is shown as finely as voxels can.
     const double grain = call.cellUm ? cells.cell : grainCells * cells.cell;
-    const double shift = 0.25 * cells.cell * std::clamp(2.0 * context_.voxelSize / grain - 1.0, 0.0, 1.0);
-    return std::make_shared<GrowthMap>(cells, factor, readingWidth(grain, context_.voxelSize), shift);
+    const double pitch = context_.voxelSize;
+    double width = readingWidth(grain, pitch);
+    // Between finer voxels the pattern is smoothed less by their interpolation, and as much more by its reader.
+    if (!call.cellUm && pitch < grain)
+        width = std::max(0.75 * grain, std::sqrt(1.4 * grain * grain - pitch * pitch));
+    return std::make_shared<GrowthMap>(cells, factor, width, readingShift(cells.cell, grain, pitch));
 }
 
 std::optional<MapBuilder::CoatGrowth> MapBuilder::buildVoxelGrowth(const Expression& expression, double thicknessUm,
