@@ -32,7 +32,7 @@ constexpr int bandsHeld = 5;
 // Per row, then over the rows in order: the sums do not depend on the threads.
 struct RowSums {
     std::size_t covered = 0, supersampled = 0, green = 0;
-    double points = 0.0, unreadable = 0.0, foldsAsked = 0.0, folds = 0.0;
+    double points = 0.0, unreadable = 0.0, foldsAsked = 0.0, folds = 0.0; // of folds: texels
     float maxDisplacement = 0.f;
     V3d colour{0.0};
 };
@@ -92,6 +92,9 @@ class TileBake {
             use(static_cast<int>(rim->texel - start), *rim);
     }
 
+    // Without the mask one texel of sixteen tells the fraction.
+    bool asksFolds(int y, int x) const { return options_.foldMask || (x % 4 == 0 && y % 4 == 0); }
+
     void readRow(int y) {
         Work& work = work_.local();
         rows_.clearRow(y);
@@ -104,9 +107,7 @@ class TileBake {
                 continue;
             const int across = across_[point.triangle];
             supersampled_[ring + x] = across > 1;
-            // Without the mask one texel of sixteen tells the fraction.
-            const bool askFolds = options_.foldMask || (x % 4 == 0 && y % 4 == 0);
-            sampler_.read(point, across, askFolds, work.scratch, work.values);
+            sampler_.read(point, across, asksFolds(y, x), work.scratch, work.values);
             rows_.put(y, x, work.values);
             count(work.values, sums);
         }
@@ -120,8 +121,6 @@ class TileBake {
         ++sums.covered;
         sums.points += values.points;
         sums.unreadable += values.unreadable;
-        sums.foldsAsked += values.foldsAsked;
-        sums.folds += values.folds;
         const V3d xyz = xyzFromLinear(values.baseColour, space_);
         sums.colour += linearRec709FromXyz(xyz);
         sums.green += labFromXyz(xyz).y < -4.0;
@@ -154,9 +153,12 @@ class TileBake {
     }
 
     // The normal of the displaced surface P + h N, from its derivatives by u and v, in the frame of the tangents.
-    void normalAtTexel(int y, int x, const SurfacePoint& shown, const SurfacePoint& owner) {
+    // \return whether the surface is turned over: beside the texel normals cross before they end, as in creases that are
+    // narrower than the layers, and the heights of neighbours lie in the wrong order.
+    bool normalAtTexel(int y, int x, const SurfacePoint& shown, const SurfacePoint& owner) {
         const UvDerivatives uv = uvDerivativesOf(surface_, owner.triangle);
         V3d encoded(0.5, 0.5, 1.0);
+        bool turned = false;
         if (uv.valid) {
             const V3d normal = normalAt(surface_, shown);
             const double height = rows_.height(y, x) / heightUnits_;
@@ -173,6 +175,7 @@ class TileBake {
             if (uv.mirrored)
                 displaced = -displaced;
             const double length = displaced.length();
+            turned = displaced.dot(normal) < 0.0;
             if (length > 0.0 && displaced.dot(normal) > 0.0) {
                 displaced /= length;
                 const TangentFrames::Frame frame = frames_.at(owner, normal);
@@ -181,6 +184,7 @@ class TileBake {
             }
         }
         rows_.putNormal(y, x, V3f(encoded));
+        return turned;
     }
 
     // How the height changes over the width of the tile along a row or a column.
@@ -197,10 +201,19 @@ class TileBake {
     void normalRow(int y) {
         for (int x = 0; x < texels_.size; ++x)
             if (const SurfacePoint& point = pointOf(y, x); point.triangle >= 0) {
-                normalAtTexel(y, x, point, point);
-                sums_[y].maxDisplacement = std::max(sums_[y].maxDisplacement, std::abs(rows_.height(y, x)));
+                if (normalAtTexel(y, x, point, point))
+                    rows_.putFold(y, x, 1.f);
+                RowSums& sums = sums_[y];
+                sums.maxDisplacement = std::max(sums.maxDisplacement, std::abs(rows_.height(y, x)));
+                if (asksFolds(y, x)) {
+                    sums.foldsAsked += 1.0;
+                    sums.folds += rows_.fold(y, x);
+                }
             }
-        eachRimTexel(y, [&](int x, const RimTexel& rim) { normalAtTexel(y, x, rim.shown, rim.border); });
+        eachRimTexel(y, [&](int x, const RimTexel& rim) {
+            if (normalAtTexel(y, x, rim.shown, rim.border))
+                rows_.putFold(y, x, 1.f);
+        });
     }
 
     void gutterRow(int y) {

@@ -24,6 +24,7 @@ BakeRows::BakeRows(const LayerVolume& volume, const StackOptics& optics, const B
     };
     const std::size_t texels = static_cast<std::size_t>(size_) * rows_;
     height_.assign(texels, 0.f);
+    fold_.assign(texels, 0.f);
     visible_.assign(texels, unset);
 
     displacement_ = add("displacement", 1, false, false);
@@ -111,6 +112,7 @@ void BakeRows::clearRow(int y) {
 
 void BakeRows::put(int y, int x, const TexelValues& values) {
     visible_[at(y, x)] = static_cast<std::uint8_t>(values.visible);
+    fold_[at(y, x)] = static_cast<float>(values.folds) / static_cast<float>(values.points);
     replace(y, x, values);
 }
 
@@ -131,11 +133,17 @@ void BakeRows::replace(int y, int x, const TexelValues& values) {
     if (materialId_ >= 0)
         set(materialId_, texel, ids_[values.visible]);
     if (foldMask_ >= 0)
-        set(foldMask_, texel, static_cast<double>(values.folds) / values.points);
+        putFold(y, x, static_cast<float>(values.folds) / static_cast<float>(values.points));
     if (vectors_ >= 0)
         set(vectors_, texel, values.vector * displacementScale_);
     for (int f = 0; f < fieldCount_; ++f)
         set(fields_ + f, texel, values.fields[f]);
+}
+
+void BakeRows::putFold(int y, int x, float share) {
+    fold_[at(y, x)] = share;
+    if (foldMask_ >= 0)
+        set(foldMask_, at(y, x), share);
 }
 
 void BakeRows::putNormal(int y, int x, const V3f& encoded) { set(normal_, at(y, x), V3d(encoded)); }

@@ -34,6 +34,10 @@ class BakeRows {
     bool isSet(int y, int x) const { return visible_[at(y, x)] != unset; }
     /// The outermost layer there, 0: the metal; 255 where nothing was put.
     std::uint8_t visible(int y, int x) const { return visible_[at(y, x)]; }
+    /// Share of the texel's points at which the interface folds over, as far as they were asked.
+    float fold(int y, int x) const { return fold_[at(y, x)]; }
+    /// A fold that was found otherwise, 0…1.
+    void putFold(int y, int x, float share);
     const void* row(int map, int y) const;
 
     /// Attributes known at the end, by map.
@@ -53,7 +57,7 @@ class BakeRows {
     std::vector<MapInfo> infos_;
     std::vector<std::vector<float>> floats_;
     std::vector<std::vector<Imath::half>> halves_;
-    std::vector<float> height_;
+    std::vector<float> height_, fold_;
     std::vector<std::uint8_t> visible_;
     int displacement_, diffuse_, lobes_, baseColour_, metallic_, roughness_, normal_, thickness_;
     int materialId_ = -1, foldMask_ = -1, vectors_ = -1, fields_ = -1, fieldCount_ = 0;

@@ -159,6 +159,36 @@ TEST_F(BakeTexels, NormalsHoldOnSkewedAndMirroredUvs) {
     }
 }
 
+TEST_F(BakeTexels, ATroughNarrowerThanItsCoatIsAFold) {
+    // A trough of radius 5 across the middle of the sheet: normals meet in its axis, below the top of 8 voxels.
+    SurfaceMesh surface = test::sheet(side, 128);
+    for (std::size_t i = 0; i < surface.positions.size(); ++i) {
+        const float x = surface.positions[i].x, half = 0.5f * static_cast<float>(M_PI) * 5.f;
+        const float along = x - 0.5f * side;
+        if (std::abs(along) < half) {
+            const float angle = along / 5.f;
+            surface.positions[i] = {0.5f * side + 5.f * std::sin(angle), surface.positions[i].y, -5.f * std::cos(angle)};
+            surface.normals[i] = {-std::sin(angle), 0.f, std::cos(angle)};
+        } else {
+            surface.positions[i].x = x - std::copysign(half - 5.f, along);
+        }
+    }
+    piece_ = test::makePiece(std::move(surface), test::voxelScale(), 14.0);
+    auto work = piece_->work();
+    coat(work, "cuprite_2", 8.0, nullptr, piece_->progress);
+    BakeOptions options;
+    options.resolution = 128;
+    options.foldMask = true;
+    Progress progress;
+    const MapSet maps = bake(*piece_->volume, piece_->surface, optics(), options, progress);
+    EXPECT_EQ(at(maps, "fold_mask", 64, 64), 1.0);
+    EXPECT_EQ(at(maps, "fold_mask", 16, 64), 0.0);
+    EXPECT_EQ(at(maps, "fold_mask", 112, 64), 0.0);
+    // At most the trough, 5 pi of 64.
+    EXPECT_GT(maps.summary.foldFraction, 0.1);
+    EXPECT_LT(maps.summary.foldFraction, 5.0 * M_PI / side + 0.02);
+}
+
 TEST_F(BakeTexels, SeveralTilesAreBakedEachByItself) {
     SurfaceMesh surface = test::sheet(side, 32);
     for (auto& uv : surface.uvs)

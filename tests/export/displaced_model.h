@@ -28,6 +28,8 @@ struct Measured {
 inline Measured measure(Mesh mesh, int voxels, int resolution, int dice, bool atlas, bool vectors = false) {
     if (atlas)
         makeFaceAtlas(mesh, resolution);
+    for (Imath::V2f& uv : mesh.uvs) // as the program does: UVs that stick out by a texel
+        uv = {std::clamp(uv.x, 0.f, 1.f), std::clamp(uv.y, 0.f, 1.f)};
     LimitSurfaceOptions limit;
     limit.level = 1;
     const Imath::V3f size = makeLimitSurface(mesh, limit).bounds().size();

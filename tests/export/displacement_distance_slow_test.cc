@@ -1,4 +1,4 @@
-// The displaced mesh is the voxel surface: what a displacement map is for; on a scan and on a cage, as fine as maps get.
+// The displaced mesh is the voxel surface: what a displacement map is for; on a scan.
 
 #include "displaced_model.h"
 
@@ -15,23 +15,19 @@ TEST(DisplacementDistance, TheDisplacedScanOfTheBuddhaIsTheVoxelSurface) {
         GTEST_SKIP() << "no ../shared";
     const test::Measured measured = test::measure(readMesh(file), 512, 4096, 6, false);
     test::expectControl(measured);
-    // Measured: 0.088 and 0.43 from the mesh, 0.040 and 0.37 to it. What is left lies in creases narrower than the
-    // coat, where neighbouring texels end on different sheets, and on the scan's edges, where normals turn within a
-    // texel.
-    EXPECT_LT(measured.displaced.meshToVolume.rms, 0.1);
-    EXPECT_LT(measured.displaced.volumeToMesh.rms, 0.05);
+    // Measured: 0.054 and 0.378 from the mesh, 0.039 and 0.351 to it. What is left lies beside the folds, where
+    // neighbouring texels end on different sheets, and on the scan's edges, where normals turn within a texel.
+    EXPECT_LT(measured.displaced.meshToVolume.rms, 0.06);
+    EXPECT_LT(measured.displaced.volumeToMesh.rms, 0.045);
     for (const auto& figures : {measured.displaced.meshToVolume, measured.displaced.volumeToMesh})
-        EXPECT_LT(figures.p999, 0.5);
-}
-
-TEST(DisplacementDistance, TheDisplacedCageOfSpotWithItsOwnUvsIsTheVoxelSurface) {
-    const test::Measured measured =
-        test::measure(readMesh(PATINA_SOURCE_DIR "/data/meshes/spot_control_mesh.obj"), 512, 4096, 2, false);
-    test::expectControl(measured);
-    for (const auto& figures : {measured.displaced.meshToVolume, measured.displaced.volumeToMesh}) {
-        EXPECT_LT(figures.rms, 0.05);
-        EXPECT_LT(figures.p999, 0.25);
-    }
+        EXPECT_LT(figures.p999, 0.4);
+    // A coat of 4 to 8 voxels is wider than many of the statue's creases: a tenth of it is folds, which are left out.
+    EXPECT_LT(measured.foldFraction, 0.11);
+    const auto masked = [](const test::DistanceFigures& figures) {
+        return double(figures.masked) / double(figures.masked + figures.points);
+    };
+    EXPECT_LT(masked(measured.displaced.meshToVolume), 0.16);
+    EXPECT_LT(masked(measured.displaced.volumeToMesh), 0.045);
 }
 
 } // namespace
