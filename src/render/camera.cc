@@ -146,6 +146,15 @@ CameraRay Camera::ray(float x, float y, const Imath::V2f& lens) const {
     return {position_ + aside, (direction * focusDistance_ - aside).normalized()};
 }
 
+bool Camera::sees(const Imath::V3f& centre, float radius) const {
+    const Imath::V3f q = centre - position_;
+    const float x = std::abs(q ^ right_), y = std::abs(q ^ upward_), z = q ^ forward_;
+    // The distance from the pyramid's sides, whose normals are (1, 0, -half) and (0, 1, -half) over their lengths.
+    const float reach = radius + lensRadius_;
+    return z >= -reach && x - halfWidth_ * z <= reach * std::sqrt(1.f + halfWidth_ * halfWidth_) &&
+           y - halfHeight_ * z <= reach * std::sqrt(1.f + halfHeight_ * halfHeight_);
+}
+
 Imath::V2f Camera::project(const Imath::V3f& point) const {
     const Imath::V3f q = point - position_;
     const float z = q ^ forward_;

@@ -53,6 +53,11 @@ class Camera {
     /// Where a point appears in the picture, in the same coordinates. Only for points in front of the camera.
     Imath::V2f project(const Imath::V3f& point) const;
 
+    /// Whether a ball reaches into the pyramid in front of the camera that the picture shows.
+    bool sees(const Imath::V3f& centre, float radius) const;
+    /// How much of the scene one of `height` pixels shows at this distance in front of the camera.
+    float pixelAt(float depth, int height) const { return 2.f * depth * halfHeight_ / float(height); }
+
     const Imath::V3f& position() const { return position_; }
     const Imath::V3f& forward() const { return forward_; }
 

@@ -15,6 +15,8 @@ class Environment {
     virtual ~Environment() = default;
     /// Radiance from a unit direction (pointing away from the scene), finite and not negative.
     virtual Imath::V3f radiance(const Imath::V3f& direction) const = 0;
+    /// Whether radiance() is the same in all directions: such light needs no table.
+    virtual bool isUniform() const { return false; }
     /// How many looks each way tell what a cell of 1.9 degrees holds, for the tables it is sampled by.
     virtual int looksPerCell() const { return 3; }
 };
@@ -24,6 +26,7 @@ class UniformEnvironment final : public Environment {
   public:
     explicit UniformEnvironment(const Imath::V3f& radiance) : radiance_(radiance) {}
     Imath::V3f radiance(const Imath::V3f&) const override { return radiance_; }
+    bool isUniform() const override { return true; }
 
   private:
     Imath::V3f radiance_;

@@ -29,9 +29,23 @@ void appendCumulative(std::vector<float>& table, std::vector<double>::const_iter
     table.push_back(1.f);
 }
 
+// The first entry above j / steps, for each j.
+void appendGuide(std::vector<std::uint8_t>& guide, const float* table, int count, int steps) {
+    int entry = 0;
+    for (int j = 0; j < steps; ++j) {
+        while (entry + 1 < count && table[entry] <= float(j) / float(steps))
+            ++entry;
+        guide.push_back(std::uint8_t(entry));
+    }
+}
+
 // The entry of a cumulative table that a number in [0, 1) falls into; the number becomes its place within the entry.
-int choose(const float* table, int count, float& u) {
-    const int entry = std::min(int(std::upper_bound(table, table + count, u) - table), count - 1);
+int choose(const float* table, int count, const std::uint8_t* guide, int steps, float& u) {
+    int entry = guide[std::min(int(u * float(steps)), steps - 1)];
+    while (entry > 0 && table[entry - 1] > u)
+        --entry;
+    while (entry + 1 < count && table[entry] <= u)
+        ++entry;
     const float below = entry > 0 ? table[entry - 1] : 0.f;
     const float width = table[entry] - below;
     u = width > 0.f ? std::clamp((u - below) / width, 0.f, 0.999999f) : 0.5f;
@@ -76,7 +90,8 @@ Lights::Lights(std::shared_ptr<const Environment> environment, std::optional<Key
     const float least = power > 0.0 ? float(0.01 * power / cells) : 1.f;
     for (float& l : luminances)
         l = std::max(l, least);
-    for (int i = 0; i < normalsDown * normalsAround; ++i) {
+    const bool byCosine = environment_->isUniform() && !skyOnly;
+    for (int i = 0; i < normalsDown * normalsAround && !byCosine; ++i) {
         const float theta = pi * float(i / normalsAround) / (normalsDown - 1);
         const float phi = 2.f * pi * float(i % normalsAround) / normalsAround;
         tables_.push_back(makeTable(
@@ -120,7 +135,6 @@ Lights::Table Lights::makeTable(const std::vector<float>& luminances, const Imat
     Table table;
     std::vector<double> rowWeights;
     std::vector<double> weights(columns);
-    double total = 0.0;
     for (int row = 0; row < rows; ++row) {
         const float z = 2.f * (float(row) + 0.5f) / rows - 1.f;
         const float r = std::sqrt(1.f - z * z);
@@ -133,24 +147,35 @@ Lights::Table Lights::makeTable(const std::vector<float>& luminances, const Imat
             double& weight = weights[std::size_t(column)];
             weight = skyOnly && z < 0.f ? 0.0 : luminances[std::size_t(row) * columns + std::size_t(column)] * cosine;
             sum += weight;
-            table.density.push_back(float(weight));
         }
         appendCumulative(table.columnCumulative, weights.begin(), columns);
+        appendGuide(table.columnGuide, table.columnCumulative.data() + row * columns, columns, guideSteps);
         rowWeights.push_back(sum);
-        total += sum;
     }
     appendCumulative(table.rowCumulative, rowWeights.begin(), rows);
-    for (float& d : table.density)
-        d *= float(double(rows) * columns / (4.0 * M_PI * total));
+    appendGuide(table.rowGuide, table.rowCumulative.data(), rows, guideSteps);
     return table;
 }
 
-const Lights::Table& Lights::tableFor(const Imath::V3f& normal) const {
+float Lights::density(const Table& table, int row, int column) {
+    const float* rowsTo = table.rowCumulative.data() + row;
+    const float* columnsTo = table.columnCumulative.data() + row * columns + column;
+    const float ofRow = row > 0 ? rowsTo[0] - rowsTo[-1] : rowsTo[0];
+    const float ofColumn = column > 0 ? columnsTo[0] - columnsTo[-1] : columnsTo[0];
+    return ofRow * ofColumn * float(rows * columns / (4.0 * M_PI));
+}
+
+Lights::Aim Lights::aim(const Imath::V3f& normal) const {
+    Aim aim;
+    aim.normal = normal;
+    if (tables_.empty())
+        return aim;
     const Imath::V3f n = frame_.toLocal(normal);
     const int down =
         std::clamp(int(std::acos(std::clamp(n.z, -1.f, 1.f)) / pi * (normalsDown - 1) + 0.5f), 0, normalsDown - 1);
     const int around = int((std::atan2(n.y, n.x) / (2.f * pi) + 1.f) * normalsAround + 0.5f) % normalsAround;
-    return tables_[std::size_t(down * normalsAround + around)];
+    aim.table = down * normalsAround + around;
+    return aim;
 }
 
 Imath::V3f Lights::radiance(Source source, const Imath::V3f& direction) const {
@@ -165,20 +190,22 @@ Imath::V3f Lights::radiance(const Imath::V3f& direction) const {
     return radiance(environment, direction) + radiance(keyLight, direction);
 }
 
-float Lights::pdf(Source source, const Imath::V3f& normal, const Imath::V3f& direction) const {
+float Lights::pdf(Source source, Aim aim, const Imath::V3f& direction) const {
     if (source == keyLight) {
         const bool inside = key_ && 0.5f * (direction - key_->direction).length2() <= keyVersine_;
         return inside ? 1.f / (2.f * pi * keyVersine_) : 0.f;
     }
+    if (aim.table < 0)
+        return std::max(aim.normal ^ direction, 0.f) / pi;
     const Imath::V3f d = frame_.toLocal(direction);
     const int row = std::clamp(int(0.5f * (d.z + 1.f) * rows), 0, rows - 1);
     float turn = std::atan2(d.y, d.x) / (2.f * pi);
     turn = turn < 0.f ? turn + 1.f : turn;
     const int column = std::clamp(int(turn * columns), 0, columns - 1);
-    return tableFor(normal).density[std::size_t(row) * columns + std::size_t(column)];
+    return density(tables_[std::size_t(aim.table)], row, column);
 }
 
-Lights::Sample Lights::sample(Source source, const Imath::V3f& normal, const Imath::V2f& position) const {
+Lights::Sample Lights::sample(Source source, Aim aim, const Imath::V2f& position) const {
     if (source == keyLight) {
         if (!key_)
             return {{0, 0, 1}, Imath::V3f(0.f), 0.f};
@@ -189,13 +216,25 @@ Lights::Sample Lights::sample(Source source, const Imath::V3f& normal, const Ima
         const Imath::V3f direction = keyFrame_.toWorld({r * std::cos(phi), r * std::sin(phi), 1.f - versine});
         return {direction.normalized(), keyRadiance_, 1.f / (2.f * pi * keyVersine_)};
     }
+    if (aim.table < 0) {
+        // A point of the sphere that touches the surface from above, seen from where it touches, is as likely as the
+        // cosine of its direction.
+        const float z = 1.f - 2.f * position.x, phi = 2.f * pi * position.y;
+        const float r = std::sqrt(std::max(0.f, 1.f - z * z));
+        const Imath::V3f d = aim.normal + Imath::V3f(r * std::cos(phi), r * std::sin(phi), z);
+        const float length = d.length();
+        if (!(length > 1e-4f))
+            return {aim.normal, Imath::V3f(0.f), 0.f};
+        const Imath::V3f direction = d / length;
+        return {direction, environment_->radiance(direction), pdf(environment, aim, direction)};
+    }
     float u = position.x, v = position.y;
-    const Table& table = tableFor(normal);
-    const int row = choose(table.rowCumulative.data(), rows, v);
-    const int column = choose(table.columnCumulative.data() + row * columns, columns, u);
+    const Table& table = tables_[std::size_t(aim.table)];
+    const int row = choose(table.rowCumulative.data(), rows, table.rowGuide.data(), guideSteps, v);
+    const int column = choose(table.columnCumulative.data() + row * columns, columns,
+                              table.columnGuide.data() + row * guideSteps, guideSteps, u);
     const Imath::V3f direction = frame_.toWorld(cellDirection(row, column, v, u)).normalized();
-    return {direction, environment_->radiance(direction),
-            table.density[std::size_t(row) * columns + std::size_t(column)]};
+    return {direction, environment_->radiance(direction), density(table, row, column)};
 }
 
 Imath::V3f Lights::irradiance(const Imath::V3f& normal) const {

@@ -6,6 +6,7 @@
 
 #include <Imath/ImathBox.h>
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -52,11 +53,24 @@ class Lights {
         Imath::V3f radiance;  ///< of this source alone
         float pdf;            ///< per solid angle; 0: nothing to see
     };
+    /// What sampling for a surface with some normal needs to know, found once for all that is asked about it.
+    class Aim {
+        friend class Lights;
+        int table = -1; ///< -1: light that is the same from everywhere is sampled by the cosine alone
+        Imath::V3f normal{0, 0, 1};
+    };
+    Aim aim(const Imath::V3f& normal) const;
     /// For a surface with this normal: the environment is sampled in proportion to its radiance times, roughly, the
     /// cosine.
-    Sample sample(Source source, const Imath::V3f& normal, const Imath::V2f& position) const;
+    Sample sample(Source source, Aim aim, const Imath::V2f& position) const;
+    Sample sample(Source source, const Imath::V3f& normal, const Imath::V2f& position) const {
+        return sample(source, aim(normal), position);
+    }
     /// Density with which sample() of this source draws a direction for this normal.
-    float pdf(Source source, const Imath::V3f& normal, const Imath::V3f& direction) const;
+    float pdf(Source source, Aim aim, const Imath::V3f& direction) const;
+    float pdf(Source source, const Imath::V3f& normal, const Imath::V3f& direction) const {
+        return pdf(source, aim(normal), direction);
+    }
     /// The part of the light that comes from this source, roughly: how often to choose it where only one is sampled.
     float chance(Source source) const {
         return source == areaLights ? areaChance_
@@ -84,19 +98,23 @@ class Lights {
     double environmentPower_ = 0.0; ///< roughly what a facing surface gets
 
     // The sphere in cells of equal solid angle: `columns` around, `rows` along the height above the horizon. One table
-    // for each of a few normals, 20 degrees apart.
+    // for each of a few normals, 20 degrees apart. A cell's chance is what its entries differ by from those before, so
+    // that density and sampling agree to the bit; a guide tells where among a row's entries to begin to look (Chen and
+    // Asau 1974).
     static constexpr int columns = 192;
     static constexpr int rows = 96;
+    static constexpr int guideSteps = 64;
     static constexpr int normalsAround = 18;
     static constexpr int normalsDown = 10;
     struct Table {
-        std::vector<float> rowCumulative;    ///< ends at 1
-        std::vector<float> columnCumulative; ///< of each row, ends at 1
-        std::vector<float> density;          ///< per solid angle, of each cell
+        std::vector<float> rowCumulative;      ///< ends at 1
+        std::vector<float> columnCumulative;   ///< of each row, ends at 1
+        std::vector<std::uint8_t> rowGuide;    ///< `guideSteps` of them
+        std::vector<std::uint8_t> columnGuide; ///< of each row
     };
     static Table makeTable(const std::vector<float>& luminances, const Imath::V3f& normal, bool skyOnly);
-    const Table& tableFor(const Imath::V3f& normal) const;
-    std::vector<Table> tables_;
+    static float density(const Table& table, int row, int column);
+    std::vector<Table> tables_; ///< none where the environment is uniform and all of it is sampled
     Imath::V3f cellDirection(int row, int column, float down, float across) const;
 };
 

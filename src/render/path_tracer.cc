@@ -11,6 +11,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <limits>
 #include <thread>
 
@@ -22,7 +23,9 @@ using Imath::V3f;
 namespace {
 
 constexpr int tileSize = 16;
-constexpr int drawsPerVertex = 6;
+constexpr int blockSize = 4; // whose pixels' camera rays are traced together
+static_assert(blockSize * blockSize <= RayScene::packetSize && tileSize % blockSize == 0);
+constexpr int drawsPerVertex = 7; // which light, three lights, two for a direction, roulette
 
 float largest(const V3f& c) {
     return std::max({c.x, c.y, c.z});
@@ -45,10 +48,10 @@ float tent(float u) {
 
 // Lights are sampled by radiance times cosine, which is all that a perfectly diffuse surface asks for: there, light met
 // by chance would only add noise.
-bool leavesLightsToShadowRays(const LambertBsdf&) {
+bool leavesLightsToShadowRays(const SeenLambert&) {
     return true;
 }
-bool leavesLightsToShadowRays(const PatinaBsdf&) {
+bool leavesLightsToShadowRays(const SeenBsdf&) {
     return false;
 }
 
@@ -58,7 +61,8 @@ class PathWalk {
     PathWalk(const Stage& stage, const Lights& lights, const RenderOptions& options, PixelSampler& sampler)
         : stage_(stage), lights_(lights), options_(options), sampler_(sampler) {}
 
-    V3f radiance(const CameraRay& camera);
+    /// \param first  what the camera's ray met
+    V3f radiance(const V3f& origin, const V3f& direction, const std::optional<RayScene::Hit>& first);
     std::uint64_t rays() const { return rays_; }
 
   private:
@@ -67,10 +71,10 @@ class PathWalk {
     bool scatter(const Bsdf& bsdf, const StagePoint& point);
     /// One shadow ray to one light, chosen with this chance.
     template <typename Bsdf>
-    void sampleLight(const Bsdf& bsdf, const StagePoint& point, const V3f& wo, Lights::Source source, float chance);
+    void sampleLight(const Bsdf& bsdf, const StagePoint& point, Lights::Source source, float chance);
     /// The same to the lights in the scene, which are sampled so often that their density counts `share` times.
     template <typename Bsdf>
-    void sampleAreaLights(const Bsdf& bsdf, const StagePoint& point, const V3f& wo, float share);
+    void sampleAreaLights(const Bsdf& bsdf, const StagePoint& point, float share);
     /// Light in the scene that the ray passed before it met what is `farthest` away.
     void meetAreaLights(float farthest);
     /// How often the first surface samples them.
@@ -86,7 +90,8 @@ class PathWalk {
     V3f origin_{0.f}, direction_{0.f};
     V3f light_{0.f};
     V3f throughput_{1.f};
-    V3f normal_{0.f};          ///< of the surface that the ray left
+    Lights::Aim aim_;          ///< for the surface that the ray left
+    V3f normal_{0.f};          ///< of that surface
     bool lightsDone_ = false;  ///< the surface that the ray left has all direct light already
     float directionPdf_ = 0.f; ///< of the ray, by its BSDF
     int depth_ = 0;
@@ -101,14 +106,14 @@ void PathWalk::add(V3f light, bool indirect) {
 }
 
 template <typename Bsdf>
-void PathWalk::sampleLight(const Bsdf& bsdf, const StagePoint& point, const V3f& wo, Lights::Source source,
-                           float chance) {
-    const Lights::Sample towards = lights_.sample(source, point.shading.normal, sampler_.next2());
+void PathWalk::sampleLight(const Bsdf& bsdf, const StagePoint& point, Lights::Source source, float chance) {
+    const Lights::Sample towards = lights_.sample(source, aim_, sampler_.next2());
     const V3f wi = point.shading.toLocal(towards.direction);
     const float density = towards.pdf * chance;
     if (!(density > 0.f) || wi.z <= 0.f)
         return;
-    const V3f reflected = bsdf.evaluate(wo, wi) * (wi.z / density) * towards.radiance;
+    const BsdfValue here = bsdf.evaluate(wi);
+    const V3f reflected = here.value * (wi.z / density) * towards.radiance;
     if (!(largest(reflected) > 0.f))
         return;
     if (stage_.facesFloor(point, towards.direction))
@@ -116,49 +121,57 @@ void PathWalk::sampleLight(const Bsdf& bsdf, const StagePoint& point, const V3f&
     ++rays_;
     if (stage_.blocked(point, towards.direction))
         return;
-    const float weight = leavesLightsToShadowRays(bsdf) ? 1.f : powerHeuristic(density, bsdf.pdf(wo, wi));
+    const float weight = leavesLightsToShadowRays(bsdf) ? 1.f : powerHeuristic(density, here.pdf);
     add(throughput_ * reflected * weight, depth_ > 0);
 }
 
 template <typename Bsdf>
-void PathWalk::sampleAreaLights(const Bsdf& bsdf, const StagePoint& point, const V3f& wo, float share) {
+void PathWalk::sampleAreaLights(const Bsdf& bsdf, const StagePoint& point, float share) {
     const AreaLightSet::Sample towards = lights_.area().sample(point.origin, point.shading.normal, sampler_.next2());
     const V3f wi = point.shading.toLocal(towards.direction);
     const float density = towards.pdf * share;
     if (!(density > 0.f) || wi.z <= 0.f)
         return;
-    const V3f reflected = bsdf.evaluate(wo, wi) * (wi.z / density) * towards.radiance;
+    const BsdfValue here = bsdf.evaluate(wi);
+    const V3f reflected = here.value * (wi.z / density) * towards.radiance;
     if (!(largest(reflected) > 0.f))
         return;
     ++rays_;
     if (stage_.blocked(point, towards.direction, towards.distance))
         return;
-    const float weight = leavesLightsToShadowRays(bsdf) ? 1.f : powerHeuristic(density, bsdf.pdf(wo, wi));
+    const float weight = leavesLightsToShadowRays(bsdf) ? 1.f : powerHeuristic(density, here.pdf);
     add(throughput_ * reflected * weight, depth_ > 0);
 }
 
 template <typename Bsdf>
 bool PathWalk::scatter(const Bsdf& bsdf, const StagePoint& point) {
-    const V3f wo = point.shading.toLocal(-direction_);
-    sampler_.seek(1 + depth_ * drawsPerVertex);
+    const int draw = 1 + depth_ * drawsPerVertex;
+    aim_ = lights_.aim(point.shading.normal);
+    normal_ = point.shading.normal;
     // At what the camera sees every light is sampled, further on only one of them.
-    const float choice = sampler_.next1();
+    const float keyChance = lights_.chance(Lights::keyLight), areaChance = lights_.chance(Lights::areaLights);
     if (depth_ == 0) {
-        sampleLight(bsdf, point, wo, Lights::environment, 1.f);
-        if (lights_.hasKey())
-            sampleLight(bsdf, point, wo, Lights::keyLight, 1.f);
-        for (int look = 0; look < areaLooks() && !lights_.area().empty(); ++look)
-            sampleAreaLights(bsdf, point, wo, float(areaLooks()));
-    } else if (choice < lights_.chance(Lights::areaLights)) {
-        sampleAreaLights(bsdf, point, wo, lights_.chance(Lights::areaLights));
+        sampler_.seek(draw + 1);
+        sampleLight(bsdf, point, Lights::environment, 1.f);
+        if (keyChance > 0.f)
+            sampleLight(bsdf, point, Lights::keyLight, 1.f);
+        for (int look = 0; look < areaLooks() && areaChance > 0.f; ++look)
+            sampleAreaLights(bsdf, point, float(areaLooks()));
     } else {
-        const float past = choice - lights_.chance(Lights::areaLights);
-        const auto source = past < lights_.chance(Lights::keyLight) ? Lights::keyLight : Lights::environment;
-        sampleLight(bsdf, point, wo, source, lights_.chance(source));
+        sampler_.seek(draw);
+        const float choice = keyChance > 0.f || areaChance > 0.f ? sampler_.next1() : 1.f;
+        sampler_.seek(draw + 1);
+        if (choice < areaChance) {
+            sampleAreaLights(bsdf, point, areaChance);
+        } else {
+            const auto source = choice - areaChance < keyChance ? Lights::keyLight : Lights::environment;
+            sampleLight(bsdf, point, source, lights_.chance(source));
+        }
     }
 
+    sampler_.seek(draw + 4);
     const V2f u = sampler_.next2();
-    const BsdfSample next = bsdf.sample(wo, {u.x, u.y, sampler_.next1()});
+    const BsdfSample next = bsdf.sample({u.x, u.y, sampler_.next1()});
     if (!(next.pdf > 0.f) || !(next.wi.z > 0.f) || !(largest(next.weight) > 0.f))
         return false;
     throughput_ *= next.weight;
@@ -173,7 +186,6 @@ bool PathWalk::scatter(const Bsdf& bsdf, const StagePoint& point) {
     directionPdf_ = next.pdf;
     direction_ = point.shading.toWorld(next.wi).normalized();
     origin_ = point.origin;
-    normal_ = point.shading.normal;
     return true;
 }
 
@@ -182,8 +194,10 @@ void PathWalk::meetLights() {
         return;
     V3f light(0.f);
     for (const auto source : {Lights::environment, Lights::keyLight}) {
+        if (source == Lights::keyLight && lights_.chance(source) == 0.f)
+            continue;
         // As likely as the shadow ray of the surface that the path comes from was to go this way.
-        const float density = lights_.pdf(source, normal_, direction_) * (depth_ == 1 ? 1.f : lights_.chance(source));
+        const float density = lights_.pdf(source, aim_, direction_) * (depth_ == 1 ? 1.f : lights_.chance(source));
         light += lights_.radiance(source, direction_) * powerHeuristic(directionPdf_, density);
     }
     add(throughput_ * light, depth_ > 1);
@@ -201,13 +215,14 @@ void PathWalk::meetAreaLights(float farthest) {
         add(throughput_ * light, depth_ > 1);
 }
 
-V3f PathWalk::radiance(const CameraRay& camera) {
-    origin_ = camera.origin;
-    direction_ = camera.direction;
+V3f PathWalk::radiance(const V3f& origin, const V3f& direction, const std::optional<RayScene::Hit>& first) {
+    origin_ = origin;
+    direction_ = direction;
     for (;; ++depth_) {
         ++rays_;
         StagePoint point;
-        const StageHit met = stage_.intersect(origin_, direction_, depth_ > 0, point);
+        const StageHit met = depth_ == 0 ? stage_.meet(first, origin_, direction_, false, point)
+                                         : stage_.intersect(origin_, direction_, true, point);
         if (!lights_.area().empty() && met != StageHit::inside)
             meetAreaLights(met == StageHit::nothing ? std::numeric_limits<float>::infinity()
                                                     : (point.position - origin_).length());
@@ -226,14 +241,18 @@ V3f PathWalk::radiance(const CameraRay& camera) {
                 add(throughput_ * stage_.backdrop() * far, depth_ > 1);
                 throughput_ *= 1.f - far;
             }
-            if (far >= 1.f || depth_ >= options_.maxDepth || !scatter(stage_.groundBsdf(), point))
+            if (far >= 1.f || depth_ >= options_.maxDepth || !scatter(SeenLambert{stage_.groundAlbedo()}, point))
                 return light_;
             break;
         }
-        case StageHit::surface:
-            if (depth_ >= options_.maxDepth || !scatter(stage_.material(point), point))
+        case StageHit::surface: {
+            if (depth_ >= options_.maxDepth)
+                return light_;
+            const PatinaBsdf bsdf = stage_.material(point);
+            if (!scatter(SeenBsdf(bsdf, point.shading.toLocal(-direction_)), point))
                 return light_;
             break;
+        }
         }
     }
 }
@@ -276,28 +295,50 @@ Rendering render(const RenderScene& scene, const Camera& camera, const Lights& l
     const std::thread::id caller = std::this_thread::get_id();
     const int lensDraw = 1 + options.maxDepth * drawsPerVertex; // behind those of the path
 
-    // Adds samples first … last - 1 of a pixel to its sum.
-    const auto samplePixel = [&](int x, int y, int first, int last) {
-        PixelSampler sampler(random, x, y);
-        V3f sum = result.image.rgb(x, y);
-        std::uint64_t traced = 0;
-        for (int sample = first; sample < last; ++sample) {
-            sampler.startSample(std::uint32_t(sample));
-            const V2f offset = sampler.next2();
-            V2f lens(0.5f);
-            if (camera.hasLens()) {
-                sampler.seek(lensDraw);
-                lens = sampler.next2();
+    // Adds samples first … last - 1 of each pixel of a block to its sum. The camera's rays go through the block
+    // together, one of each pixel.
+    const auto sampleBlock = [&](int left, int top, int first, int last) {
+        std::vector<PixelSampler> samplers;
+        std::vector<Imath::V2i> pixels;
+        for (int y = top; y < std::min(top + blockSize, options.height); ++y)
+            for (int x = left; x < std::min(left + blockSize, options.width); ++x) {
+                pixels.emplace_back(x, y);
+                samplers.emplace_back(random, x, y);
             }
-            PathWalk walk(stage, lights, options, sampler);
-            const V3f light =
-                walk.radiance(camera.ray((float(x) + 0.5f + tent(offset.x)) / float(options.width),
-                                         (float(y) + 0.5f + tent(offset.y)) / float(options.height), lens));
-            if (isFinite(light))
-                sum += light;
-            traced += walk.rays();
+        std::uint64_t traced = 0;
+        RayScene::Packet packet;
+        packet.count = int(pixels.size());
+        std::vector<V3f> sums;
+        for (const Imath::V2i& pixel : pixels)
+            sums.push_back(result.image.rgb(pixel.x, pixel.y));
+        for (int sample = first; sample < last; ++sample) {
+            for (int i = 0; i < packet.count; ++i) {
+                PixelSampler& sampler = samplers[std::size_t(i)];
+                sampler.startSample(std::uint32_t(sample));
+                const V2f offset = sampler.next2();
+                V2f lens(0.5f);
+                if (camera.hasLens()) {
+                    sampler.seek(lensDraw);
+                    lens = sampler.next2();
+                }
+                const Imath::V2i& pixel = pixels[std::size_t(i)];
+                const CameraRay ray =
+                    camera.ray((float(pixel.x) + 0.5f + tent(offset.x)) / float(options.width),
+                               (float(pixel.y) + 0.5f + tent(offset.y)) / float(options.height), lens);
+                packet.origin[i] = ray.origin;
+                packet.direction[i] = ray.direction;
+            }
+            stage.trace(packet);
+            for (int i = 0; i < packet.count; ++i) {
+                PathWalk walk(stage, lights, options, samplers[std::size_t(i)]);
+                const V3f light = walk.radiance(packet.origin[i], packet.direction[i], packet.hit[i]);
+                if (isFinite(light))
+                    sums[std::size_t(i)] += light;
+                traced += walk.rays();
+            }
         }
-        result.image.setRgb(x, y, sum);
+        for (std::size_t i = 0; i < pixels.size(); ++i)
+            result.image.setRgb(pixels[i].x, pixels[i].y, sums[i]);
         return traced;
     };
     const auto takeRound = [&](int first, int last) {
@@ -307,9 +348,9 @@ Rendering render(const RenderScene& scene, const Camera& camera, const Lights& l
                 progress.checkpoint();
                 const int left = tile % across * tileSize, top = tile / across * tileSize;
                 std::uint64_t traced = 0;
-                for (int y = top; y < std::min(top + tileSize, options.height); ++y)
-                    for (int x = left; x < std::min(left + tileSize, options.width); ++x)
-                        traced += samplePixel(x, y, first, last);
+                for (int y = top; y < std::min(top + tileSize, options.height); y += blockSize)
+                    for (int x = left; x < std::min(left + tileSize, options.width); x += blockSize)
+                        traced += sampleBlock(x, y, first, last);
                 rays += traced;
                 const int finished = ++done;
                 // Progress listens to one thread only: the caller's, which works on tiles too.
@@ -320,6 +361,7 @@ Rendering render(const RenderScene& scene, const Camera& camera, const Lights& l
     };
     using Clock = std::chrono::steady_clock;
     const auto begin = Clock::now();
+    const std::clock_t worked = std::clock();
     while (result.samples < options.samples) {
         int next = options.samples;
         if (options.seconds > 0.0) {
@@ -334,6 +376,8 @@ Rendering render(const RenderScene& scene, const Camera& camera, const Lights& l
     for (float& c : result.image.pixels)
         c /= float(result.samples);
     result.rays = rays;
+    result.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    result.processorSeconds = double(std::clock() - worked) / CLOCKS_PER_SEC;
     return result;
 }
 

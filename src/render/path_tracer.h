@@ -25,9 +25,11 @@ struct RenderOptions {
 };
 
 struct Rendering {
-    Image image;            ///< linear Rec.709 light
-    std::uint64_t rays = 0; ///< traced, shadow rays included
-    int samples = 0;        ///< taken of each pixel
+    Image image;                   ///< linear Rec.709 light
+    std::uint64_t rays = 0;        ///< traced, shadow rays included
+    int samples = 0;               ///< taken of each pixel
+    double seconds = 0.0;          ///< that tracing took, the scene's and the lights' setting up left out
+    double processorSeconds = 0.0; ///< that the process's threads worked meanwhile, together
 };
 
 /// Path tracing with multiple importance sampling between lights and BSDF (power heuristic), a tent filter of one

@@ -10,8 +10,7 @@ std::uint32_t reverseBits(std::uint32_t v) {
     v = ((v >> 1) & 0x55555555u) | ((v & 0x55555555u) << 1);
     v = ((v >> 2) & 0x33333333u) | ((v & 0x33333333u) << 2);
     v = ((v >> 4) & 0x0F0F0F0Fu) | ((v & 0x0F0F0F0Fu) << 4);
-    v = ((v >> 8) & 0x00FF00FFu) | ((v & 0x00FF00FFu) << 8);
-    return (v >> 16) | (v << 16);
+    return __builtin_bswap32(v);
 }
 
 // Multiplying by an even number lets each bit flip only bits above it. On reversed bits that is Owen's scrambling: a
@@ -42,15 +41,25 @@ float unit(std::uint32_t word) {
 
 } // namespace
 
-Imath::V2f PixelSampler::next2() {
-    while (std::size_t(draw_) >= seeds_.size())
+const std::array<std::uint32_t, 4>& PixelSampler::seedsOf(int draw) {
+    while (std::size_t(draw) >= seeds_.size())
         seeds_.push_back(random_->words(std::uint32_t(seeds_.size()), x_, y_, 0));
-    const auto& seed = seeds_[std::size_t(draw_++)];
+    return seeds_[std::size_t(draw)];
+}
+
+Imath::V2f PixelSampler::next2() {
+    const auto& seed = seedsOf(draw_++);
     const std::uint32_t index = reverseBits(scrambleReversed(reverseBits(sample_), seed[0]));
     // The first dimension is the index with its bits reversed; scrambling wants it reversed once more.
     const std::uint32_t first = reverseBits(scrambleReversed(index, seed[1]));
     const std::uint32_t second = reverseBits(scrambleReversed(sobolSecondReversed(index), seed[2]));
     return {unit(first), unit(second)};
+}
+
+float PixelSampler::next1() {
+    const auto& seed = seedsOf(draw_++);
+    const std::uint32_t index = reverseBits(scrambleReversed(reverseBits(sample_), seed[0]));
+    return unit(reverseBits(scrambleReversed(index, seed[1])));
 }
 
 } // namespace patina

@@ -26,9 +26,11 @@ class PixelSampler {
     void seek(int draw) { draw_ = draw; }
 
     Imath::V2f next2();
-    float next1() { return next2().x; }
+    float next1(); ///< the first of next2()
 
   private:
+    const std::array<std::uint32_t, 4>& seedsOf(int draw);
+
     const KeyedRandom* random_;
     int x_;
     int y_;

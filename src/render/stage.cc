@@ -1,6 +1,7 @@
 #include "render/stage.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace patina {
 
@@ -37,19 +38,15 @@ V3f bendTowards(const V3f& normal, const V3f& geometric, const V3f& wo) {
 
 } // namespace
 
-V3f LambertBsdf::evaluate(const V3f&, const V3f& wi) const {
-    return V3f(wi.z > 0.f ? albedo / pi : 0.f);
+BsdfValue SeenLambert::evaluate(const V3f& wi) const {
+    return wi.z > 0.f ? BsdfValue{V3f(albedo / pi), wi.z / pi} : BsdfValue{};
 }
 
-BsdfSample LambertBsdf::sample(const V3f&, const V3f& u) const {
+BsdfSample SeenLambert::sample(const V3f& u) const {
     // Uniform on the disc below, lifted to the hemisphere (Malley): density cos / pi, weight the albedo.
     const float r = std::sqrt(u.x), phi = 2.f * pi * u.y;
     const float z = std::sqrt(std::max(0.f, 1.f - u.x));
     return {{r * std::cos(phi), r * std::sin(phi), z}, z / pi, V3f(albedo)};
-}
-
-float LambertBsdf::pdf(const V3f&, const V3f& wi) const {
-    return std::max(0.f, wi.z) / pi;
 }
 
 Stage::Stage(const RenderScene& scene, const Lights& lights) : Stage(scene) {
@@ -97,40 +94,48 @@ Stage::Stage(const RenderScene& scene)
     clearance_ = 4e-6f * std::max(farthest, radius_);
 }
 
+Stage::Floor Stage::floorAlong(const V3f& origin, const V3f& direction) const {
+    Floor floor{std::numeric_limits<float>::infinity(), upright_.normal, false};
+    if (!scene_.ground)
+        return floor;
+    const float height = (origin ^ upright_.normal) - floorHeight_;
+    const float sinking = -(direction ^ upright_.normal);
+    if (height > 0.f && sinking > 1e-7f)
+        floor.distance = height / sinking;
+    if (table_)
+        if (const auto hit = table_->intersect(origin, direction, floor.distance))
+            floor = {hit->distance, hit->normal, true};
+    return floor;
+}
+
+void Stage::trace(RayScene::Packet& packet) const {
+    for (int i = 0; i < packet.count; ++i)
+        packet.farthest[i] = floorAlong(packet.origin[i], packet.direction[i]).distance;
+    rays_.intersect(packet);
+}
+
 StageHit Stage::intersect(const V3f& origin, const V3f& direction, bool indirect, StagePoint& point) const {
-    float farthest = std::numeric_limits<float>::infinity();
-    bool meetsFloor = false;
-    bool onTable = false;
-    V3f floorNormal = upright_.normal;
-    if (scene_.ground) {
-        const float height = (origin ^ upright_.normal) - floorHeight_;
-        const float sinking = -(direction ^ upright_.normal);
-        if (height > 0.f && sinking > 1e-7f) {
-            farthest = height / sinking;
-            meetsFloor = true;
-        }
-        if (table_)
-            if (const auto hit = table_->intersect(origin, direction, farthest)) {
-                farthest = hit->distance;
-                floorNormal = hit->normal;
-                meetsFloor = true;
-                onTable = true;
-            }
-    }
-    if (const auto hit = rays_.intersect(origin, direction, 0.f, farthest)) {
+    const float farthest = floorAlong(origin, direction).distance;
+    return meet(rays_.intersect(origin, direction, 0.f, farthest), origin, direction, indirect, point);
+}
+
+StageHit Stage::meet(const std::optional<RayScene::Hit>& hit, const V3f& origin, const V3f& direction, bool indirect,
+                     StagePoint& point) const {
+    if (hit) {
         const bool back = (hit->geometricNormal ^ direction) > 0.f;
         if (back && indirect && scene_.surface->closed)
             return StageHit::inside;
         shadeSurface(*hit, direction, back, point);
         return StageHit::surface;
     }
-    if (!meetsFloor)
+    const Floor floor = floorAlong(origin, direction);
+    if (!std::isfinite(floor.distance))
         return StageHit::nothing;
-    point.position = origin + direction * farthest;
-    if (!onTable)
+    point.position = origin + direction * floor.distance;
+    if (!floor.isTable)
         point.position += upright_.normal * (floorHeight_ - (point.position ^ upright_.normal));
-    point.origin = point.position + floorNormal * clearance_;
-    point.shading = onTable && floorNormal != upright_.normal ? frameAround(floorNormal) : upright_;
+    point.origin = point.position + floor.normal * clearance_;
+    point.shading = floor.normal != upright_.normal ? frameAround(floor.normal) : upright_;
     return StageHit::ground;
 }
 

@@ -9,13 +9,12 @@
 
 namespace patina {
 
-/// A perfectly diffuse reflector, with PatinaBsdf's functions.
-struct LambertBsdf {
+/// A perfectly diffuse reflector, with SeenBsdf's functions.
+struct SeenLambert {
     float albedo;
 
-    Imath::V3f evaluate(const Imath::V3f& wo, const Imath::V3f& wi) const;
-    BsdfSample sample(const Imath::V3f& wo, const Imath::V3f& u) const;
-    float pdf(const Imath::V3f& wo, const Imath::V3f& wi) const;
+    BsdfValue evaluate(const Imath::V3f& wi) const;
+    BsdfSample sample(const Imath::V3f& u) const;
 };
 
 enum class StageHit {
@@ -45,6 +44,11 @@ class Stage {
 
     /// `indirect`: not a camera ray, so that the inside of a closed surface means an error of rounding.
     StageHit intersect(const Imath::V3f& origin, const Imath::V3f& direction, bool indirect, StagePoint& point) const;
+    /// The same for what a ray, traced as far as the floor, met first.
+    StageHit meet(const std::optional<RayScene::Hit>& hit, const Imath::V3f& origin, const Imath::V3f& direction,
+                  bool indirect, StagePoint& point) const;
+    /// Traces rays as intersect() does. \param packet  with count, origins and directions
+    void trace(RayScene::Packet& packet) const;
     /// Whether a ray to a light far away would end on the floor: known without tracing it.
     bool facesFloor(const StagePoint& from, const Imath::V3f& direction) const;
     /// Whether anything stands between the point and a light far away, or one at a distance.
@@ -52,7 +56,7 @@ class Stage {
     bool blocked(const StagePoint& from, const Imath::V3f& direction, float distance) const;
 
     PatinaBsdf material(const StagePoint& point) const { return scene_.material(point.surface, point.position); }
-    LambertBsdf groundBsdf() const { return {scene_.groundAlbedo}; }
+    float groundAlbedo() const { return scene_.groundAlbedo; }
 
     /// How far a point of the floor has faded into the backdrop: 0 near the object, 1 far away.
     float backdropShare(const Imath::V3f& floorPoint) const;
@@ -61,6 +65,13 @@ class Stage {
     Imath::V3f seenByCamera(const Lights& lights, const Imath::V3f& direction) const;
 
   private:
+    /// Where a ray meets floor or turntable; infinitely far away where it does not.
+    struct Floor {
+        float distance;
+        Imath::V3f normal;
+        bool isTable;
+    };
+    Floor floorAlong(const Imath::V3f& origin, const Imath::V3f& direction) const;
     void shadeSurface(const RayScene::Hit& hit, const Imath::V3f& direction, bool back, StagePoint& point) const;
 
     RenderScene scene_;

@@ -16,27 +16,33 @@ using Imath::V3i;
 
 namespace {
 
-/// Embree's context with the best hit so far, for ties between triangles that share the edge a ray passes through.
+/// Embree's context with the best hit so far of each ray, by its ID, for ties between triangles that share the edge a
+/// ray passes through.
 struct NearestContext {
     RTCIntersectContext context;
-    float distance;
-    unsigned triangle;
+    float distance[RayScene::packetSize];
+    unsigned triangle[RayScene::packetSize];
 };
 
 /// Two triangles hit at exactly the same distance: the order of traversal depends on how the tree was built, so the
 /// smaller index wins.
 void keepSmallestIndex(const RTCFilterFunctionNArguments* arguments) {
-    if (arguments->valid[0] != -1 || arguments->context == nullptr)
+    if (arguments->context == nullptr)
         return;
     auto* nearest = reinterpret_cast<NearestContext*>(arguments->context);
-    const float distance = RTCRayN_tfar(arguments->ray, arguments->N, 0);
-    const unsigned triangle = RTCHitN_primID(arguments->hit, arguments->N, 0);
-    if (distance == nearest->distance && triangle > nearest->triangle) {
-        arguments->valid[0] = 0;
-        return;
+    for (unsigned i = 0; i < arguments->N; ++i) {
+        if (arguments->valid[i] != -1)
+            continue;
+        const unsigned ray = RTCRayN_id(arguments->ray, arguments->N, i);
+        const float distance = RTCRayN_tfar(arguments->ray, arguments->N, i);
+        const unsigned triangle = RTCHitN_primID(arguments->hit, arguments->N, i);
+        if (distance == nearest->distance[ray] && triangle > nearest->triangle[ray]) {
+            arguments->valid[i] = 0;
+            continue;
+        }
+        nearest->distance[ray] = distance;
+        nearest->triangle[ray] = triangle;
     }
-    nearest->distance = distance;
-    nearest->triangle = triangle;
 }
 
 struct TrianglePoint {
@@ -125,6 +131,11 @@ struct RayScene::Scene {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
 
+    Hit hitAt(int triangle, float u, float v, float distance) const {
+        const Corners& c = corners[static_cast<std::size_t>(triangle)];
+        return {{triangle, u, v}, distance, (c.b - c.a).cross(c.c - c.a)};
+    }
+
     ~Scene() {
         if (scene)
             rtcReleaseScene(scene);
@@ -183,9 +194,9 @@ RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
 std::optional<RayScene::Hit> RayScene::intersect(const V3f& origin, const V3f& direction, float nearest,
                                                  float farthest) const {
-    NearestContext context{};
+    NearestContext context;
     rtcInitIntersectContext(&context.context);
-    context.distance = -1.f;
+    context.distance[0] = -1.f;
     RTCRayHit query{};
     query.ray.org_x = origin.x;
     query.ray.org_y = origin.y;
@@ -201,12 +212,38 @@ std::optional<RayScene::Hit> RayScene::intersect(const V3f& origin, const V3f& d
     rtcIntersect1(scene_->scene, &context.context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return std::nullopt;
-    Hit hit;
-    hit.point = {static_cast<int>(query.hit.primID), query.hit.u, query.hit.v};
-    hit.distance = query.ray.tfar;
-    const Corners& corners = scene_->corners[hit.point.triangle];
-    hit.geometricNormal = (corners.b - corners.a).cross(corners.c - corners.a);
-    return hit;
+    return scene_->hitAt(static_cast<int>(query.hit.primID), query.hit.u, query.hit.v, query.ray.tfar);
+}
+
+void RayScene::intersect(Packet& packet) const {
+    NearestContext context;
+    rtcInitIntersectContext(&context.context);
+    context.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    alignas(64) int valid[packetSize];
+    alignas(64) RTCRayHit16 query{};
+    for (int i = 0; i < packetSize; ++i) {
+        const int from = i < packet.count ? i : 0;
+        context.distance[i] = -1.f;
+        valid[i] = i < packet.count ? -1 : 0;
+        query.ray.org_x[i] = packet.origin[from].x;
+        query.ray.org_y[i] = packet.origin[from].y;
+        query.ray.org_z[i] = packet.origin[from].z;
+        query.ray.dir_x[i] = packet.direction[from].x;
+        query.ray.dir_y[i] = packet.direction[from].y;
+        query.ray.dir_z[i] = packet.direction[from].z;
+        query.ray.tfar[i] = packet.farthest[from];
+        query.ray.mask[i] = 0xffffffffu;
+        query.ray.id[i] = static_cast<unsigned>(i);
+        query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    rtcIntersect16(valid, scene_->scene, &context.context, &query);
+    for (int i = 0; i < packet.count; ++i) {
+        packet.hit[i].reset();
+        if (query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID)
+            packet.hit[i] =
+                scene_->hitAt(static_cast<int>(query.hit.primID[i]), query.hit.u[i], query.hit.v[i], query.ray.tfar[i]);
+    }
 }
 
 bool RayScene::occluded(const V3f& origin, const V3f& direction, float nearest, float farthest) const {

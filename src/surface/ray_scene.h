@@ -27,6 +27,16 @@ class RayScene {
     /// The first hit with nearest ≤ distance ≤ farthest, distances in lengths of `direction`. Watertight along edges.
     std::optional<Hit> intersect(const Imath::V3f& origin, const Imath::V3f& direction, float nearest = 0.f,
                                  float farthest = std::numeric_limits<float>::infinity()) const;
+    /// The first hits of up to 16 rays that start near each other and go much the same way, as a camera's do: several
+    /// times the speed of one after the other. Each goes as far as `farthest` says, in lengths of its direction.
+    static constexpr int packetSize = 16;
+    struct Packet {
+        int count = 0;
+        Imath::V3f origin[packetSize], direction[packetSize];
+        float farthest[packetSize];
+        std::optional<Hit> hit[packetSize]; ///< receives what is met
+    };
+    void intersect(Packet& packet) const;
     /// Whether anything is hit between nearest and farthest.
     bool occluded(const Imath::V3f& origin, const Imath::V3f& direction, float nearest, float farthest) const;
 

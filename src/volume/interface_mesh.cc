@@ -40,6 +40,17 @@ bool isClosed(const std::vector<Imath::V3i>& triangles) {
     return true;
 }
 
+// Of phi_k, over a voxel each way; scene units.
+Imath::V3d slopeAt(const NestSampler& sampler, int k, const Imath::V3d& at) {
+    Imath::V3d slope;
+    for (int axis = 0; axis < 3; ++axis) {
+        Imath::V3d half(0.0);
+        half[axis] = 0.5;
+        slope[axis] = sampler.value(k, sampler.locate(at + half)) - sampler.value(k, sampler.locate(at - half));
+    }
+    return slope;
+}
+
 } // namespace
 
 SurfaceMesh interfaceMesh(const LayerVolume& volume, int layer) {
@@ -64,13 +75,7 @@ SurfaceMesh interfaceMesh(const LayerVolume& volume, int layer) {
         const openvdb::Vec3d index = transform.worldToIndex(points[i]);
         const Imath::V3d at(index.x(), index.y(), index.z());
         mesh.positions[i] = Imath::V3f(at * voxelSize);
-        Imath::V3d slope;
-        for (int axis = 0; axis < 3; ++axis) {
-            Imath::V3d half(0.0);
-            half[axis] = 0.5;
-            slope[axis] =
-                sampler.value(layer, sampler.locate(at + half)) - sampler.value(layer, sampler.locate(at - half));
-        }
+        const Imath::V3d slope = slopeAt(sampler, layer, at);
         mesh.normals[i] = slope.length() > 0.0 ? Imath::V3f(slope.normalized()) : Imath::V3f(0, 0, 1);
     });
     mesh.triangles.reserve(triangles.size() + 2 * quads.size());
@@ -83,6 +88,24 @@ SurfaceMesh interfaceMesh(const LayerVolume& volume, int layer) {
     }
     mesh.closed = isClosed(mesh.triangles);
     return mesh;
+}
+
+std::vector<Imath::V3f> baseNormals(const LayerVolume& volume, const std::vector<Imath::V3f>& points) {
+    const NestSampler sampler(volume.grids());
+    const double voxelSize = volume.scale().voxelSize;
+    std::vector<Imath::V3f> normals(points.size());
+    tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t i) {
+        const Imath::V3d slope = slopeAt(sampler, sampler.reference(), Imath::V3d(points[i]) / voxelSize);
+        // Within the band phi rises by about a voxel over a voxel.
+        normals[i] = slope.length() > 0.1 * voxelSize ? Imath::V3f(slope.normalized()) : Imath::V3f(0.f);
+    });
+    return normals;
+}
+
+bool isInsideVolume(const LayerVolume& volume, const Imath::V3f& point) {
+    const NestSampler sampler(volume.grids());
+    const NestCell cell = sampler.locate(Imath::V3d(point) / volume.scale().voxelSize);
+    return sampler.value(volume.layerCount(), cell) < 0.0;
 }
 
 } // namespace patina

@@ -1,6 +1,7 @@
 #include "render/lights.h"
 
 #include "base/errors.h"
+#include "optics/patina_bsdf.h"
 #include "render/pixel_sampler.h"
 
 #include <gtest/gtest.h>
@@ -115,6 +116,94 @@ TEST(Lights, theStudioIsWhiteBalancedAndExposed) {
     EXPECT_NEAR(white.y, 1.f, 0.15f);
     EXPECT_NEAR(white.x / white.y, 1.f, 0.03f);
     EXPECT_NEAR(white.z / white.y, 1.f, 0.03f);
+}
+
+// Pearson's chi² of drawn directions against the density: 400,000 in 8 × 16 patches of equal solid angle.
+TEST(Lights, samplesFollowTheirDensity) {
+    const Lights studio = studioLights(UpAxis::z), uniform(std::make_shared<UniformEnvironment>(V3f(1.f)));
+    const KeyedRandom random(1, "lights", "chi square");
+    constexpr int rows = 8, columns = 16, samples = 400000, fine = 48; // whole cells of the tables
+    const auto patchOf = [&](const V3f& d) {
+        const double turn = std::atan2(double(d.y), double(d.x)) / (2.0 * pi);
+        return std::min(int(0.5 * (d.z + 1.0) * rows), rows - 1) * columns +
+               std::min(int((turn < 0.0 ? turn + 1.0 : turn) * columns), columns - 1);
+    };
+    for (const Lights* lights : {&studio, &uniform})
+        for (const V3f& normal :
+             {V3f(0, 0, 1), V3f(0.7f, -0.5f, 0.2f).normalized(), V3f(-0.2f, 0.3f, -0.9f).normalized()}) {
+            std::vector<double> expected(rows * columns, 0.0), counts(rows * columns, 0.0);
+            for (int i = 0; i < rows * fine; ++i)
+                for (int j = 0; j < columns * fine; ++j) {
+                    const double z = 2.0 * (i + 0.5) / (rows * fine) - 1.0,
+                                 phi = 2.0 * pi * (j + 0.5) / (columns * fine);
+                    const double r = std::sqrt(1.0 - z * z);
+                    const V3f d(float(r * std::cos(phi)), float(r * std::sin(phi)), float(z));
+                    expected[std::size_t(i / fine * columns + j / fine)] +=
+                        double(lights->pdf(Lights::environment, normal, d)) * samples * 4.0 * pi /
+                        (rows * columns * fine * fine);
+                }
+            for (int i = 0; i < samples; ++i) {
+                const auto u = random.uniforms(0, i, 0, 0);
+                const auto drawn = lights->sample(Lights::environment, normal, {float(u[0]), float(u[1])});
+                if (drawn.pdf > 0.f)
+                    counts[std::size_t(patchOf(drawn.direction))] += 1.0;
+            }
+            double chi2 = 0.0, pooledExpected = 0.0, pooled = 0.0;
+            int freedom = -1;
+            for (std::size_t i = 0; i < counts.size(); ++i) {
+                if (expected[i] < 5.0) {
+                    pooledExpected += expected[i], pooled += counts[i];
+                    continue;
+                }
+                chi2 += (counts[i] - expected[i]) * (counts[i] - expected[i]) / expected[i];
+                ++freedom;
+            }
+            EXPECT_LT(std::abs(pooled - pooledExpected), 5.0 * std::sqrt(pooledExpected) + 5.0);
+            // Six cases at a significance of 0.01 together.
+            EXPECT_LT((chi2 - freedom) / std::sqrt(2.0 * freedom), 3.3);
+        }
+}
+
+// Light alone, BSDF alone and both together (power heuristic) are three estimates of one integral.
+TEST(Lights, multipleImportanceSamplingKeepsTheMean) {
+    const Lights lights = studioLights(UpAxis::z);
+    Appearance look; // matt under a satin gloss
+    look.diffuse = V3f(0.3f);
+    look.lobes.resize(1);
+    look.lobes[0].colour = V3f(0.3f);
+    look.lobes[0].edgeColour = V3f(0.6f);
+    look.lobes[0].alpha = 0.35f;
+    const PatinaBsdf bsdf(look);
+    const V3f normal = V3f(0.2f, -0.6f, 0.75f).normalized();
+    const Frame frame = frameAround(normal);
+    const SeenBsdf seen(bsdf, V3f(0.5f, 0.1f, 0.85f).normalized());
+    const KeyedRandom random(1, "lights", "mis");
+    const auto density = [&](const V3f& d) { return lights.pdf(Lights::environment, normal, d); };
+    const auto square = [](float x) { return double(x) * double(x); };
+    constexpr int samples = 400000;
+    double ofLights = 0.0, ofBsdf = 0.0, ofBoth = 0.0;
+    for (int i = 0; i < samples; ++i) {
+        const auto u = random.uniforms(0, i, 0, 0), v = random.uniforms(1, i, 0, 0);
+        const auto light = lights.sample(Lights::environment, normal, {float(u[0]), float(u[1])});
+        const V3f wi = frame.toLocal(light.direction);
+        const BsdfValue f = seen.evaluate(wi);
+        if (light.pdf > 0.f && f.pdf > 0.f) {
+            const double part = double(f.value.y) * double(wi.z) * double(light.radiance.y) / double(light.pdf);
+            ofLights += part;
+            ofBoth += part * square(light.pdf) / (square(light.pdf) + square(f.pdf));
+        }
+        const BsdfSample drawn = seen.sample({float(v[0]), float(v[1]), float(v[2])});
+        if (drawn.pdf > 0.f && drawn.wi.z > 0.f) {
+            const V3f d = frame.toWorld(drawn.wi);
+            // The set's floor is left to the BSDF: light sampling never goes there.
+            const double part = double(drawn.weight.y) * double(lights.radiance(Lights::environment, d).y);
+            const float other = density(d);
+            ofBsdf += other > 0.f ? part : 0.0;
+            ofBoth += other > 0.f ? part * square(drawn.pdf) / (square(drawn.pdf) + square(other)) : 0.0;
+        }
+    }
+    EXPECT_NEAR(ofLights / ofBsdf, 1.0, 0.01);
+    EXPECT_NEAR(ofBoth / ofLights, 1.0, 0.01);
 }
 
 TEST(Lights, refusesImpossibleLight) {

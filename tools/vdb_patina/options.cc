@@ -189,6 +189,11 @@ void addRenderOptions(CLI::App& app, Options& options) {
         ->check(oneOf({"mesh", "volume"}))
         ->type_name("WHAT")
         ->group("Picture");
+    app.add_option("--dice", options.dice,
+                   "Longest edge of the shown mesh in view, pixels (default 1; 0: the model's own triangles)")
+        ->check(numberWithin(0.0, 1000.0))
+        ->type_name("PIXELS")
+        ->group("Picture");
     app.add_option("--time", options.seconds, "Take as many samples as fit into so many seconds, --samples at most")
         ->check(numberAboveZero())
         ->type_name("SECONDS")

@@ -71,6 +71,7 @@ struct Options {
     std::string camera;  ///< "azimuth,elevation[,distance[,field of view]]"
     std::string closeUp; ///< "x,y,z,size", scene units of the model
     double aspect = 0.0; ///< width over height; 0: the subject's
+    double dice = 1.0;   ///< longest edge of the shown mesh, pixels; 0: the model's own triangles
     double fStop = 0.0;  ///< 0: everything is sharp
     bool floor = true;
     bool exr = false;

@@ -4,17 +4,20 @@
 #include "view_input.h"
 
 #include "base/errors.h"
+#include "render/dice.h"
 #include "render/displace.h"
 #include "render/exr_picture.h"
 #include "render/film.h"
 #include "render/path_tracer.h"
 #include "render/stack_shader.h"
+#include "surface/ray_scene.h"
 #include "volume/interface_mesh.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
+#include <chrono>
 
 namespace patina::tool {
 
@@ -23,43 +26,51 @@ namespace {
 // A picture's light takes 12 bytes a pixel, its features 44, their halves as much again.
 constexpr double bytesPerPixel = 160.0;
 
-// The surface that a picture shows, and which point of the model's surface carries the stack that is seen there.
-class ShownSurface {
-  public:
-    ShownSurface(const LayerVolume& volume, const Model& model, const StackShader& shader, const Options& options)
-        : model_(model) {
-        if (options.from == "volume") {
-            surface_ = interfaceMesh(volume, volume.layerCount());
-            unturned_ = surface_.positions;
-            base_.emplace(model.surface.positions, model.surface.triangles);
-        } else {
-            surface_ = displaced(model.surface, shader.vertexHeights());
-        }
-        if (model.region) {
-            turn_ = poseOnTable(surface_, options.up);
-            turn_.apply(surface_);
-            surface_.closed = false; // its sides are cuts, not the inside of a body
-        }
+// The model moved out to where the air begins, as coarse as it is: what the camera is placed by.
+SurfaceMesh sketchOf(const LayerVolume& volume, const Model& model, const StackOptics& optics) {
+    const StackShader shader(volume, model.surface, optics);
+    return displaced(model.surface, shader.vertexHeights());
+}
+
+// The surface that a picture shows, and the points of the model's surface that carry the stack seen there: one for
+// each vertex.
+struct ShownSurface {
+    SurfaceMesh shown;
+    SurfaceMesh base;
+    StackReading reading = StackReading::adaptive;
+
+    // The model in triangles of about a pixel, displaced by the stack under each vertex.
+    void takeMesh(const Model& model, const View& view, const Turn& turn, float margin, const LayerVolume& volume,
+                  const Options& options) {
+        DiceOptions dice;
+        dice.pictureHeight = view.height;
+        dice.pixelsPerEdge = float(options.dice);
+        dice.longestEdge = 1.5f * float(volume.scale().voxelSize); // what the shader reads at vertices alone
+        dice.margin = margin;
+        dice.toPicture = turn;
+        base = options.dice > 0.0 && volume.layerCount() > 0 ? diced(model.surface, view.camera, dice) : model.surface;
     }
 
-    const SurfaceMesh& surface() const { return surface_; }
-    Imath::V3f fromModel(const Imath::V3d& point) const { return turn_(Imath::V3f(model_.toLocal(point))); }
-    SurfacePoint onModel(const SurfacePoint& point) const {
-        if (!base_)
-            return point;
-        const Imath::V3i& corners = surface_.triangles[std::size_t(point.triangle)];
-        const Imath::V3f& a = unturned_[std::size_t(corners[0])];
-        const Imath::V3f p =
-            a + (unturned_[std::size_t(corners[1])] - a) * point.u + (unturned_[std::size_t(corners[2])] - a) * point.v;
-        return base_->closest(p)->point;
+    // The voxels' own surface. Its normals are the model's, tilted as the interface is against the base: facets and
+    // voxels are no more seen than in the mesh.
+    void takeVolume(const LayerVolume& volume, const Model& model) {
+        reading = StackReading::vertices;
+        shown = interfaceMesh(volume, volume.layerCount());
+        base.positions.resize(shown.positions.size());
+        base.normals.resize(shown.positions.size());
+        base.triangles = shown.triangles;
+        const std::vector<Imath::V3f> under = baseNormals(volume, shown.positions);
+        const RayScene rays(model.surface.positions, model.surface.triangles);
+        tbb::parallel_for(std::size_t(0), shown.positions.size(), [&](std::size_t v) {
+            const auto nearest = rays.closest(shown.positions[v]);
+            base.positions[v] = Imath::V3f(positionAt(model.surface, nearest->point));
+            base.normals[v] = Imath::V3f(normalAt(model.surface, nearest->point));
+            const Imath::V3f tilted = base.normals[v] + shown.normals[v] - under[v];
+            // Over a thin edge the model's normal may look the other way: the interface's own is right there.
+            if (under[v].length2() > 0.f && (base.normals[v] ^ under[v]) > 0.5f && tilted.length2() > 0.04f)
+                shown.normals[v] = tilted.normalized();
+        });
     }
-
-  private:
-    const Model& model_;
-    SurfaceMesh surface_;
-    std::vector<Imath::V3f> unturned_;
-    std::optional<RayScene> base_;
-    Turn turn_;
 };
 
 void checkSize(const View& view, const Options& options) {
@@ -100,6 +111,8 @@ void exposePicture(const RenderScene& scene, const View& view, const FeaturesAt&
     const Lights lights =
         lightsOf(options, view.from.azimuthDegrees, scene.setting ? *scene.setting : scene.surface->bounds());
     const Rendering rendering = render(scene, view.camera, lights, settings, console);
+    console.info(fmt::format("{} rays traced in {:.2f} s ({:.2f} s of the processors)", rendering.rays, rendering.seconds,
+                             rendering.processorSeconds));
     if (options.seconds > 0.0)
         console.info(fmt::format("{} samples per pixel", rendering.samples));
 
@@ -119,30 +132,56 @@ void exposePicture(const RenderScene& scene, const View& view, const FeaturesAt&
 void writePicture(const LayerVolume& volume, const Model& model, const StackOptics& optics, const Options& options,
                   const std::filesystem::path& file, Console& console) {
     const ProgressStage stage(console, "render " + file.filename().string());
-    const StackOptics shown = optics.in(ColourSpace::rec709); // whatever space the maps are in
-    const StackShader shader(volume, model.surface, shown);
-    const ShownSurface surface(volume, model, shader, options);
+    const auto begin = std::chrono::steady_clock::now();
+    const StackOptics colours = optics.in(ColourSpace::rec709); // whatever space the maps are in
+    ShownSurface surface;
+    const bool ofVolume = options.from == "volume";
+    if (ofVolume)
+        surface.takeVolume(volume, model);
+    SurfaceMesh sketch = ofVolume ? surface.shown : sketchOf(volume, model, colours);
+    float highest = 0.f; // above the base
+    for (std::size_t v = 0; !ofVolume && v < sketch.positions.size(); ++v)
+        highest = std::max(highest, (sketch.positions[v] - model.surface.positions[v]).length());
+    Turn turn;
+    if (model.region) {
+        turn = poseOnTable(sketch, options.up);
+        turn.apply(sketch);
+        sketch.closed = false; // its sides are cuts, not the inside of a body
+    }
 
     Subject subject;
-    subject.surface = &surface.surface();
-    subject.fromModel = [&](const Imath::V3d& point) { return surface.fromModel(point); };
+    subject.surface = &sketch;
+    subject.fromModel = [&](const Imath::V3d& point) { return turn(Imath::V3f(model.toLocal(point))); };
     subject.unitsPerModelUnit = model.magnification();
     subject.metresPerModelUnit = volume.scale().metresPerUnit * model.magnification();
     const View view = options.view ? *options.view : viewOf(options, subject);
     if (!options.view)
         sayWhereVoxelsAreCoarse(volume, view, options, console);
+    checkSize(view, options);
+    if (isInsideVolume(volume, turn.back(view.camera.position())))
+        throw RunError("camera", "it stands inside the object",
+                       "move it away: a larger distance, or another direction");
+    if (!ofVolume)
+        surface.takeMesh(model, view, turn, highest, volume, options);
+    const StackShader shader(volume, surface.base, colours, surface.reading);
+    if (!ofVolume)
+        surface.shown = displaced(surface.base, shader.vertexHeights());
+    turn.apply(surface.shown);
+    surface.shown.closed = sketch.closed;
 
     RenderScene scene;
-    scene.surface = &surface.surface();
+    scene.surface = &surface.shown;
     scene.up = options.up;
     scene.setting = view.setting;
     scene.ground = options.floor && !model.region;
     scene.turntable = options.light == "studio";
     if (model.region && options.light == "studio")
         scene.background = Imath::V3f(0.18f);
-    scene.material = [&](const SurfacePoint& point, const Imath::V3f&) { return shader.bsdf(surface.onModel(point)); };
+    scene.material = [&](const SurfacePoint& point, const Imath::V3f&) { return shader.bsdf(point); };
+    console.info(fmt::format("{} triangles set up in {:.2f} s", scene.surface->triangles.size(),
+                             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()));
     exposePicture(
-        scene, view, [&](const SurfacePoint& point) { return shader.features(surface.onModel(point)); }, options, file,
+        scene, view, [&](const SurfacePoint& point) { return shader.features(point); }, options, file,
         volume.provenance.scriptName, console);
 }
 

@@ -16,6 +16,10 @@ struct Turn {
         const Imath::V3d w(v);
         return Imath::V3f(Imath::V3d(rows[0].dot(w), rows[1].dot(w), rows[2].dot(w)));
     }
+    /// The other way round.
+    Imath::V3f back(const Imath::V3f& v) const {
+        return Imath::V3f(rows[0] * double(v.x) + rows[1] * double(v.y) + rows[2] * double(v.z));
+    }
     void apply(SurfaceMesh& surface) const; ///< to positions and normals
 };
 
