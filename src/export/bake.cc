@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <optional>
 
 namespace patina {
 
@@ -42,9 +43,9 @@ struct RowSums {
 class TileBake {
   public:
     TileBake(const SurfaceWalk& walk, const TexelSampler& sampler, const TangentFrames& frames,
-             const BakeOptions& options, const std::vector<std::uint8_t>& pointsAcross, ColourSpace space,
+             const VectorFrames* vectorFrames, const BakeOptions& options, const std::vector<std::uint8_t>& pointsAcross, ColourSpace space,
              double heightUnits, TexelMap texels, BakeRows& rows)
-        : surface_(walk.surface()), sampler_(sampler), frames_(frames), options_(options), across_(pointsAcross),
+        : surface_(walk.surface()), sampler_(sampler), frames_(frames), vectorFrames_(vectorFrames), options_(options), across_(pointsAcross),
           space_(space), heightUnits_(heightUnits), texels_(std::move(texels)), rows_(rows), sums_(options.resolution),
           supersampled_(static_cast<std::size_t>(options.resolution) * rows.rows()) {}
 
@@ -108,13 +109,21 @@ class TileBake {
             const int across = across_[point.triangle];
             supersampled_[ring + x] = across > 1;
             sampler_.read(point, across, asksFolds(y, x), work.scratch, work.values);
+            putInSpace(point, work.values);
             rows_.put(y, x, work.values);
             count(work.values, sums);
         }
         eachRimTexel(y, [&](int x, const RimTexel& rim) {
             sampler_.read(rim.shown, across_[rim.shown.triangle], options_.foldMask, work.scratch, work.values);
+            putInSpace(rim.border, work.values);
             rows_.put(y, x, work.values);
         });
+    }
+
+    // Texels beside a chart are read in the chart's frame.
+    void putInSpace(const SurfacePoint& owner, TexelValues& values) const {
+        if (vectorFrames_)
+            values.vector = toSpace(options_.vectorSpace, vectorFrames_->at(owner), values.vector);
     }
 
     void count(const TexelValues& values, RowSums& sums) const {
@@ -148,6 +157,7 @@ class TileBake {
                 continue;
             ++sums_[y].supersampled;
             sampler_.read(point, 2, options_.foldMask, work.scratch, work.values);
+            putInSpace(point, work.values);
             rows_.replace(y, x, work.values);
         }
     }
@@ -227,6 +237,7 @@ class TileBake {
     const SurfaceMesh& surface_;
     const TexelSampler& sampler_;
     const TangentFrames& frames_;
+    const VectorFrames* vectorFrames_; ///< null: vectors stay in object space
     const BakeOptions& options_;
     const std::vector<std::uint8_t>& across_;
     ColourSpace space_;
@@ -291,6 +302,9 @@ BakeSummary bakeInto(MapSink& sink, const LayerVolume& volume, const SurfaceMesh
     summary.tiles = uvTiles(surface);
     const SurfaceWalk walk(surface);
     const TangentFrames frames(surface);
+    std::optional<VectorFrames> vectorFrames;
+    if (options.vectorDisplacement && options.vectorSpace != VectorSpace::object)
+        vectorFrames.emplace(surface);
     const TexelSampler sampler(volume, walk, optics, options);
     std::vector<std::uint8_t> across(surface.triangles.size());
     tbb::parallel_for(std::size_t(0), across.size(), [&](std::size_t t) {
@@ -305,7 +319,7 @@ BakeSummary bakeInto(MapSink& sink, const LayerVolume& volume, const SurfaceMesh
     RowSums sums;
     std::size_t overlapping = 0;
     for (std::size_t i = 0; i < summary.tiles.size(); ++i) {
-        TileBake tile(walk, sampler, frames, options, across, space, heightUnits,
+        TileBake tile(walk, sampler, frames, vectorFrames ? &*vectorFrames : nullptr, options, across, space, heightUnits,
                       makeTexelMap(walk, options.resolution, options.gutter, summary.tiles[i]), rows);
         progress.checkpoint();
         std::vector<MapInfo> maps = rows.maps();

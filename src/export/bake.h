@@ -3,6 +3,7 @@
 
 #include "base/progress.h"
 #include "export/exr_file.h"
+#include "export/vector_space.h"
 #include "optics/layer_stack.h"
 #include "surface/mesh.h"
 #include "volume/layer_volume.h"
@@ -20,8 +21,11 @@ struct BakeOptions {
     double displacementUnits = 1.0;  ///< units of the maps' displacement per scene unit of the volume
     bool materialId = false;         ///< also bake material_id
     bool foldMask = false;           ///< also bake fold_mask: 1 where a height map cannot follow
-    bool vectorDisplacement = false; ///< also bake vector_displacement: object space, scene units
+    bool vectorDisplacement = false; ///< also bake vector_displacement: scene units
     bool fields = false;             ///< also bake field_NAME of every field that the volume holds
+
+    /// What the channels of vector_displacement are.
+    VectorSpace vectorSpace = VectorSpace::object;
 };
 
 /// Averages over the texels in charts of all tiles, for reports.

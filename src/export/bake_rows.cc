@@ -58,7 +58,8 @@ BakeRows::BakeRows(const LayerVolume& volume, const StackOptics& optics, const B
     }
     if (options.vectorDisplacement) {
         vectors_ = add("vector_displacement", 3, false, false);
-        infos_[vectors_].texts.emplace_back("patina_units", "scene units, object space, from the bare metal");
+        infos_[vectors_].texts.emplace_back("patina_units", "scene units, from the bare metal");
+        infos_[vectors_].texts.emplace_back("patina_space", nameOf(options.vectorSpace));
     }
     if (options.fields) {
         fields_ = static_cast<int>(infos_.size());

@@ -36,12 +36,13 @@ std::vector<std::string> split(const std::string& text) {
 
 // A view that shares the tree, so that naming and metadata of a file touch nothing of the volume.
 template <typename Grid>
-openvdb::GridBase::Ptr named(const Grid& grid, const std::string& name, openvdb::GridClass gridClass) {
+openvdb::GridBase::Ptr named(const Grid& grid, const std::string& name, openvdb::GridClass gridClass,
+                             bool half = false) {
     auto view = std::make_shared<Grid>(const_cast<Grid&>(grid), openvdb::ShallowCopy());
     view->setName(name);
     view->setGridClass(gridClass);
     view->setCreator("vdb-patina");
-    view->setSaveFloatAsHalf(false);
+    view->setSaveFloatAsHalf(half);
     return view;
 }
 
@@ -122,7 +123,7 @@ void initializeVolumes() {
     openvdb::initialize();
 }
 
-void writeVolume(const LayerVolume& volume, const std::filesystem::path& path) {
+void writeVolume(const LayerVolume& volume, const std::filesystem::path& path, const VolumeFileOptions& options) {
     const NestGrids& grids = volume.grids();
     openvdb::GridPtrVec out;
     out.push_back(named(*grids.base, "base", openvdb::GRID_LEVEL_SET));
@@ -133,7 +134,7 @@ void writeVolume(const LayerVolume& volume, const std::filesystem::path& path) {
         out.push_back(named(*grids.interfaces[k - 1], volume.interfaceGridName(k), openvdb::GRID_LEVEL_SET));
     out.push_back(named(*grids.material, "material", openvdb::GRID_UNKNOWN));
     for (const auto& [name, field] : grids.fields)
-        out.push_back(named(*field, name, openvdb::GRID_UNKNOWN));
+        out.push_back(named(*field, name, openvdb::GRID_UNKNOWN, options.halfFields));
 
     openvdb::MetaMap meta;
     const LayerVolume::Provenance& from = volume.provenance;
@@ -145,6 +146,8 @@ void writeVolume(const LayerVolume& volume, const std::filesystem::path& path) {
     meta.insertMeta("patina_model", openvdb::StringMetadata(from.model));
     meta.insertMeta("patina_model_hash", openvdb::StringMetadata(from.modelHash));
     meta.insertMeta("patina_seed", openvdb::StringMetadata(std::to_string(from.seed)));
+    if (!options.up.empty())
+        meta.insertMeta("patina_up", openvdb::StringMetadata(options.up));
     if (!from.region.empty())
         meta.insertMeta("patina_region", openvdb::StringMetadata(from.region));
     meta.insertMeta("patina_voxel_size", openvdb::DoubleMetadata(volume.scale().voxelSize));
@@ -178,6 +181,18 @@ void checkVolumeFile(const std::filesystem::path& path) {
     if (!std::filesystem::is_regular_file(path, ignored))
         throw RunError(path.string(), "there is no such file");
     checkSeal(path);
+}
+
+std::string upAxisOf(const std::filesystem::path& path) {
+    checkVolumeFile(path);
+    try {
+        openvdb::io::File vdb(path.string());
+        vdb.open(/*delayLoad=*/false);
+        return optionalText(*vdb.getMetadata(), "patina_up");
+    } catch (const openvdb::Exception& failure) {
+        throw RunError(path.string(), fmt::format("cannot be read as a volume: {}", failure.what()),
+                       "is it a whole .vdb file?");
+    }
 }
 
 LayerVolume readVolume(const std::filesystem::path& path) {

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 namespace patina::test {
@@ -59,10 +60,12 @@ inline double readMap(const MapImage& map, const Imath::V2d& uv, int channel = 0
 
 /// \param dice    every triangle of the surface is cut into dice² of them
 /// \param heights displacement (1 channel) or vector displacement (3) at the volume's scale
+/// \param space   of vector displacement
 /// \param folds   fold mask: what lies under it is left out on both sides, and so is what displacement takes nearer to
 ///                another part of the metal than half the height
 inline DisplacedDistance measureDisplaced(const LayerVolume& volume, const SurfaceMesh& surface,
-                                          const MapImage& heights, const MapImage& folds, int dice) {
+                                          const MapImage& heights, const MapImage& folds, int dice,
+                                          VectorSpace space = VectorSpace::object) {
     const double voxel = volume.scale().voxelSize;
     // Corners of the dice, triangle by triangle.
     const int perTriangle = (dice + 1) * (dice + 2) / 2;
@@ -71,6 +74,9 @@ inline DisplacedDistance measureDisplaced(const LayerVolume& volume, const Surfa
     std::vector<char> folded(positions.size());
     std::vector<Imath::V3i> faces(triangles * dice * dice);
     const NestSampler sampler(volume.grids());
+    std::optional<VectorFrames> frames;
+    if (heights.channels == 3 && space != VectorSpace::object)
+        frames.emplace(surface);
     tbb::parallel_for(std::size_t(0), triangles, [&](std::size_t t) {
         std::size_t at = t * perTriangle;
         for (int j = 0; j <= dice; ++j)
@@ -82,6 +88,8 @@ inline DisplacedDistance measureDisplaced(const LayerVolume& volume, const Surfa
                     shift = {readMap(heights, uv, 0), readMap(heights, uv, 1), readMap(heights, uv, 2)};
                 else
                     shift = normalAt(surface, point) * readMap(heights, uv);
+                if (frames)
+                    shift = fromSpace(space, frames->at(point), shift);
                 positions[at] = Imath::V3f(positionAt(surface, point) + shift);
                 // Where parts of the model have grown together, the normal ends at the metal opposite, deep inside.
                 const NestCell cell = sampler.locate(Imath::V3d(positions[at]) / voxel);

@@ -19,13 +19,15 @@ namespace patina::test {
 // A model under a coat of 4 to 8 voxels in soft hills, its maps, and how far the displaced mesh is from the volume.
 struct Measured {
     DisplacedDistance displaced, undisplaced;
+    DisplacedDistance otherSpace; ///< vectors of a space of the surface's taken for the object's
     double foldFraction = 0.0;
     std::vector<double> seams; ///< jumps of the height across UV seams, voxels, sorted
 
     double seamsUnder(double share) const { return seams[static_cast<std::size_t>(share * double(seams.size() - 1))]; }
 };
 
-inline Measured measure(Mesh mesh, int voxels, int resolution, int dice, bool atlas, bool vectors = false) {
+inline Measured measure(Mesh mesh, int voxels, int resolution, int dice, bool atlas, bool vectors = false,
+                        VectorSpace space = VectorSpace::object) {
     if (atlas)
         makeFaceAtlas(mesh, resolution);
     for (Imath::V2f& uv : mesh.uvs) // as the program does: UVs that stick out by a texel
@@ -54,11 +56,14 @@ inline Measured measure(Mesh mesh, int voxels, int resolution, int dice, bool at
     options.resolution = resolution;
     options.foldMask = true;
     options.vectorDisplacement = vectors;
+    options.vectorSpace = space;
     MapSet maps = bake(*piece->volume, piece->surface, optics, options, piece->progress);
     MapImage zero = *maps.find(vectors ? "vector_displacement" : "displacement");
     Measured measured;
     measured.foldFraction = maps.summary.foldFraction;
-    measured.displaced = measureDisplaced(*piece->volume, piece->surface, zero, *maps.find("fold_mask"), dice);
+    measured.displaced = measureDisplaced(*piece->volume, piece->surface, zero, *maps.find("fold_mask"), dice, space);
+    if (space != VectorSpace::object)
+        measured.otherSpace = measureDisplaced(*piece->volume, piece->surface, zero, *maps.find("fold_mask"), 1);
     std::fill(zero.floats.begin(), zero.floats.end(), 0.f);
     measured.undisplaced = measureDisplaced(*piece->volume, piece->surface, zero, *maps.find("fold_mask"), 1);
     if (!vectors) {

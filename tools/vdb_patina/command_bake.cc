@@ -18,8 +18,9 @@ struct Arguments {
     std::string model;
 };
 
-void bakeVolume(const Arguments& arguments, const Options& options, Console& console) {
-    const ExistingVolume input = loadExisting(arguments.volume, arguments.model, options, console);
+void bakeVolume(const Arguments& arguments, const Options& given, Console& console) {
+    const ExistingVolume input = loadExisting(arguments.volume, arguments.model, given, console);
+    const Options options = withUpOf(arguments.volume, given);
     const std::string name = std::filesystem::path(arguments.volume).stem().string();
     const auto folder = outputFolder(options, name);
     // The report of the run stays beside its volume.
@@ -31,7 +32,8 @@ void bakeVolume(const Arguments& arguments, const Options& options, Console& con
     const StackOptics optics = opticsOf(input.volume, input.materials, options);
     const BakeSummary summary =
         writeMaps(input.volume, input.model, optics, options, folder, outputs, console, arguments.volume);
-    writeMeshes(input.model, name, folder, outputs, console);
+    writeMeshes(input.model, options, name, folder, outputs, console);
+    writeMicroMesh(input.volume, input.model, optics, options, name, folder, outputs, console);
     nlohmann::ordered_json report = makeBakeReport(arguments.volume, input.volume, input.model, options);
     addMapsToReport(report, summary);
     finishReport(report, console, outputs);

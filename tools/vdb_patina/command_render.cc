@@ -17,10 +17,11 @@ struct Arguments {
     std::string model;
 };
 
-void renderVolume(const Arguments& arguments, const Options& options, Console& console) {
-    if (options.pictureSize == 0)
+void renderVolume(const Arguments& arguments, const Options& given, Console& console) {
+    if (given.pictureSize == 0)
         throw Error(ExitCode::commandLine, "--picture", "a picture of 0 pixels", "give its longer side in pixels");
-    const ExistingVolume input = loadExisting(arguments.volume, arguments.model, options, console);
+    const ExistingVolume input = loadExisting(arguments.volume, arguments.model, given, console);
+    const Options options = withUpOf(arguments.volume, given);
     const std::string name = std::filesystem::path(arguments.volume).stem().string();
     const auto folder = outputFolder(options, name);
     const StackOptics optics = opticsOf(input.volume, input.materials, options);

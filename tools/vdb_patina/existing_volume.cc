@@ -10,12 +10,21 @@
 
 namespace patina::tool {
 
-ExistingVolume loadExisting(const std::string& volumeFile, const std::string& modelName, const Options& options,
+Options withUpOf(const std::string& volumeFile, Options options) {
+    if (options.upGiven)
+        return options;
+    const std::string up = upAxisOf(volumeFile);
+    if (!up.empty())
+        options.up = up == "z" ? UpAxis::z : UpAxis::y;
+    return options;
+}
+
+ExistingVolume loadExisting(const std::string& volumeFile, const std::string& modelName, const Options& given,
                             Console& console) {
     LayerVolume volume = readVolume(volumeFile);
+    const Options options = withUpOf(volumeFile, given);
     const std::string modelFile = modelName.empty() ? modelBeside(volumeFile) : modelName;
-    Model model =
-        loadModel(modelFile, options, &volume.scale(), console, RegionRequest::of(volume, volumeFile));
+    Model model = loadModel(modelFile, options, &volume.scale(), console, RegionRequest::of(volume, volumeFile));
     // How holes were dealt with is not asked for again where it can be found out.
     for (const char* repair : {"sheet", "holes"})
         if (options.repair.empty() && !model.region && !volume.provenance.modelHash.empty() &&

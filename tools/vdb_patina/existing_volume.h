@@ -17,6 +17,9 @@ struct ExistingVolume {
     MaterialLibrary materials;
 };
 
+/// The options with the up axis of a volume, where the command line names none.
+Options withUpOf(const std::string& volumeFile, Options options);
+
 /// Reads both and checks that they belong together. An empty `modelName` means the control mesh beside the volume.
 /// \throws Error, RunError, ModelError
 ExistingVolume loadExisting(const std::string& volumeFile, const std::string& modelName, const Options& options,

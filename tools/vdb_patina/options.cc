@@ -67,8 +67,12 @@ void addModelOptions(CLI::App& app, Options& options) {
         ->type_name("UNIT")
         ->group(group);
     app.add_option_function<std::string>(
-           "--up", [&options](const std::string& word) { options.up = word == "z" ? UpAxis::z : UpAxis::y; },
-           "The model's up axis: y or z (default y)")
+           "--up",
+           [&options](const std::string& word) {
+               options.up = word == "z" ? UpAxis::z : UpAxis::y;
+               options.upGiven = true;
+           },
+           "The model's up axis: y or z (default: the volume's, or y)")
         ->check(oneOf({"y", "z"}))
         ->type_name("AXIS")
         ->group(group);
@@ -107,6 +111,11 @@ void addVolumeOptions(CLI::App& app, Options& options) {
     app.add_option("--seed", options.seed, "Seed of all randomness (default: the script's, or 0)")
         ->check(wholeNumberWithin(0, 9007199254740992))
         ->type_name("S")
+        ->group(group);
+    app.add_flag("--half-fields", options.halfFields, "Fields of the .vdb in half precision; level sets stay single")
+        ->group(group);
+    app.add_flag("--fog", options.fog,
+                 "Also write NAME_fog.vdb: how much of each voxel each layer fills, for fog shaders")
         ->group(group);
 }
 
@@ -149,7 +158,16 @@ void addMapOptions(CLI::App& app, Options& options) {
     app.add_flag("--fold-mask", options.foldMask, "Also bake fold_mask.exr: where a height map cannot follow")
         ->group(group);
     app.add_flag("--vector-displacement", options.vectorDisplacement,
-                 "Also bake vector_displacement.exr, object space: follows overhangs")
+                 "Also bake vector_displacement.exr: follows overhangs")
+        ->group(group);
+    app.add_option("--vector-space", options.vectorSpace,
+                   "Its channels: object (default; x, y, z), blender (tangent, normal, bitangent) or materialx (dPdu, "
+                   "dPdv, N)")
+        ->check(oneOf({"object", "blender", "materialx"}))
+        ->type_name("SPACE")
+        ->group(group);
+    app.add_flag("--micro-mesh", options.microMesh,
+                 "Also write NAME_micro.ply: the displaced surface, with thickness, ID and colour per vertex")
         ->group(group);
     app.add_flag("--fields", options.fields, "Also bake field_exposure.exr, … of every field in the volume")
         ->group(group);

@@ -87,6 +87,13 @@ struct Options {
     bool force = false;
     bool resume = false;
 
+    // What other programs are given.
+    bool upGiven = false;               ///< --up was there: it holds against what a volume says
+    bool halfFields = false;            ///< of the .vdb
+    bool fog = false;                   ///< NAME_fog.vdb
+    bool microMesh = false;             ///< NAME_micro.ply
+    std::string vectorSpace = "object"; ///< of vector_displacement.exr
+
     double metresPerUnit() const;
     std::map<std::string, std::string> settingMap() const;
 };

@@ -4,6 +4,7 @@
 #include "base/errors.h"
 #include "export/map_files.h"
 #include "export/materialx_file.h"
+#include "export/micro_mesh.h"
 #include "export/usd_file.h"
 #include "surface/mesh_file.h"
 #include "volume/vdb_file.h"
@@ -23,6 +24,10 @@ StackOptics opticsOf(const LayerVolume& volume, const MaterialLibrary& materials
     features.thinFilm = options.thinFilm;
     features.colourSpace = options.colourSpace == "acescg" ? ColourSpace::acescg : ColourSpace::rec709;
     return StackOptics(stack, options.optics == "paper" ? OpticsModel::paper : OpticsModel::energyConserving, features);
+}
+
+VolumeFileOptions volumeFileOptions(const Options& options) {
+    return {options.halfFields, options.up == UpAxis::z ? "z" : "y"};
 }
 
 std::filesystem::path outputFolder(const Options& options, const std::string& name) {
@@ -114,6 +119,7 @@ BakeSummary writeMaps(const LayerVolume& volume, const Model& model, const Stack
     bakeOptions.materialId = options.materialId;
     bakeOptions.foldMask = options.foldMask;
     bakeOptions.vectorDisplacement = options.vectorDisplacement;
+    bakeOptions.vectorSpace = vectorSpaceNamed(options.vectorSpace);
     bakeOptions.fields = options.fields;
     // Displacement is in the model's units, which a volume of very small voxels is not.
     bakeOptions.displacementUnits = 1.0 / model.magnification();
@@ -148,10 +154,26 @@ BakeSummary writeMaps(const LayerVolume& volume, const Model& model, const Stack
     return summary;
 }
 
-void writeMeshes(const Model& model, const std::string& name, const std::filesystem::path& folder,
-                 std::vector<std::string>& outputs, Console& console) {
+void writeMicroMesh(const LayerVolume& volume, const Model& model, const StackOptics& optics, const Options& options,
+                    const std::string& name, const std::filesystem::path& folder, std::vector<std::string>& outputs,
+                    Console& console) {
+    if (!options.microMesh)
+        return;
+    const ProgressStage stage(console, "micro mesh");
+    SurfaceMesh mesh = makeMicroMesh(volume, model.surface, optics, options.keepExaggeration, console);
+    for (Imath::V3f& p : mesh.positions)
+        p = Imath::V3f(model.toModel(Imath::V3d(p)));
+    writePly(mesh, folder / (name + "_micro.ply"));
+    outputs.push_back(name + "_micro.ply");
+}
+
+void writeMeshes(const Model& model, const Options& options, const std::string& name,
+                 const std::filesystem::path& folder, std::vector<std::string>& outputs, Console& console) {
     const ProgressStage stage(console, "write meshes");
-    writeObj(model.mesh, folder / (name + ".obj"));
+    // What is not subdivided is displaced along the normals that the maps were baked along.
+    const bool plain = !model.region && model.surface.normals.size() == model.mesh.positions.size() &&
+                       std::string(schemeOf(model, options)) == "none";
+    writeObj(model.mesh, folder / (name + ".obj"), plain ? &model.surface.normals : nullptr);
     if (model.region) {
         SurfaceMesh placed = model.surface;
         for (Imath::V3f& p : placed.positions)

@@ -8,6 +8,7 @@
 #include "optics/material_library.h"
 #include "options.h"
 #include "volume/layer_volume.h"
+#include "volume/vdb_file.h"
 
 #include <filesystem>
 #include <string>
@@ -17,6 +18,9 @@ namespace patina::tool {
 
 /// The optics of a volume's metal and layers. \throws RunError where a material is not in the library
 StackOptics opticsOf(const LayerVolume& volume, const MaterialLibrary& materials, const Options& options);
+
+/// What the options say of a .vdb.
+VolumeFileOptions volumeFileOptions(const Options& options);
 
 /// The folder for results: -o, or one named after the result. Made, and checked for being writable.
 std::filesystem::path outputFolder(const Options& options, const std::string& name);
@@ -33,8 +37,13 @@ BakeSummary writeMaps(const LayerVolume& volume, const Model& model, const Stack
                       const std::filesystem::path& folder, std::vector<std::string>& outputs, Console& console,
                       const std::filesystem::path& volumeFile = {});
 
-/// NAME.obj (control mesh) and NAME_limit.ply.
-void writeMeshes(const Model& model, const std::string& name, const std::filesystem::path& folder,
-                 std::vector<std::string>& outputs, Console& console);
+/// NAME.obj (control mesh; with normals where it is not subdivided) and NAME_limit.ply.
+void writeMeshes(const Model& model, const Options& options, const std::string& name,
+                 const std::filesystem::path& folder, std::vector<std::string>& outputs, Console& console);
+
+/// NAME_micro.ply, where it is asked for (export/micro_mesh.h).
+void writeMicroMesh(const LayerVolume& volume, const Model& model, const StackOptics& optics, const Options& options,
+                    const std::string& name, const std::filesystem::path& folder, std::vector<std::string>& outputs,
+                    Console& console);
 
 } // namespace patina::tool

@@ -9,6 +9,7 @@
 #include "base/errors.h"
 #include "base/units.h"
 #include "script/budget.h"
+#include "volume/fog_file.h"
 #include "volume/vdb_file.h"
 
 #include <fmt/format.h>
@@ -135,15 +136,20 @@ void writeResults(const Task& task, const RunResult& result, const nlohmann::ord
     std::vector<std::string> outputs;
     {
         const ProgressStage stage(console, "write volume");
-        writeVolume(volume, folder / (name + ".vdb"));
+        writeVolume(volume, folder / (name + ".vdb"), volumeFileOptions(options));
         outputs.push_back(name + ".vdb");
+        if (options.fog && volume.layerCount() > 0) {
+            writeFog(volume, folder / (name + "_fog.vdb"), options.halfFields);
+            outputs.push_back(name + "_fog.vdb");
+        }
     }
     const StackOptics optics = opticsOf(volume, materials, options);
     const StackStatistics stack = measureStack(volume, task.model.surface);
     nlohmann::ordered_json report = makeReport(task.program, task.model, options, result, stack, earlier);
     if (options.bakeMaps)
         addMapsToReport(report, writeMaps(volume, task.model, optics, options, folder, outputs, console));
-    writeMeshes(task.model, name, folder, outputs, console);
+    writeMeshes(task.model, options, name, folder, outputs, console);
+    writeMicroMesh(volume, task.model, optics, options, name, folder, outputs, console);
     if (options.pictureSize > 0) {
         writePicture(volume, task.model, optics, options, folder / "preview.png", console);
         outputs.push_back("preview.png");
