@@ -16,6 +16,7 @@ bl_info = {
     "category": "Import-Export",
 }
 
+import atexit
 import os
 import pathlib
 import shlex
@@ -24,10 +25,10 @@ import subprocess
 import bpy
 from bpy.props import BoolProperty, FloatProperty, IntProperty, StringProperty
 
-from .result import Result, ResultError
-from .scene import import_frames, import_result
+from .result import Result, ResultError, polygons_of_ply
+from .scene import import_frames, import_result, make_material
 
-__all__ = ["Result", "ResultError", "import_frames", "import_result"]
+__all__ = ["Result", "ResultError", "import_frames", "import_result", "make_material", "polygons_of_ply"]
 
 
 class ImportPatina(bpy.types.Operator):
@@ -163,9 +164,13 @@ def register():
         bpy.utils.register_class(item)
     bpy.types.Scene.vdb_patina = bpy.props.PointerProperty(type=PatinaSettings)
     bpy.types.TOPBAR_MT_file_import.append(menu)
+    # As a Python module Blender 4 crashes or hangs at the end where classes are still registered.
+    if getattr(bpy.app, "module", not bpy.app.binary_path):
+        atexit.register(unregister)
 
 
 def unregister():
+    atexit.unregister(unregister)
     bpy.types.TOPBAR_MT_file_import.remove(menu)
     del bpy.types.Scene.vdb_patina
     for item in reversed(CLASSES):

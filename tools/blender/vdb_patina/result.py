@@ -130,17 +130,20 @@ class Result:
         self.volume_scale = float(token(r"float3 xformOp:scale = \((\S+),", "1"))
         self.lobes = sorted({path.stem.split(".")[0] for path in self.folder.glob("lobe_*.exr")})
 
-    def polygons(self):
-        """What is to be subdivided and displaced: the mesh that the maps belong to.
-
-        Blender has no Loop subdivision: there, the limit surface itself, diced.
-        """
-        if self.scheme != "loop":
+    def polygons(self, diced):
+        """What is to be displaced: the mesh that the maps belong to, or its limit surface, diced."""
+        if not diced:
             return polygons_of_usd(self.text)
         path = self.folder / f"{self.name}_limit.ply"
         if not path.exists():
-            raise ResultError(f"{path} is missing: Blender cannot subdivide the mesh as its maps were baked (Loop)")
+            raise ResultError(f"{path} is missing: Blender cannot subdivide the mesh as its maps were baked")
         return polygons_of_ply(path)
+
+    def vector_space(self):
+        """"object", "blender" or "materialx"; "" where no vectors were baked."""
+        if not self.has_map("vector_displacement"):
+            return ""
+        return exr_attributes(self.map("vector_displacement")).get("patina_space", "object")
 
     def has_map(self, name):
         return any((self.folder / f"{name}{tile}.exr").exists() for tile in ("", ".1001"))

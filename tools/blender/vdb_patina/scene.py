@@ -32,10 +32,10 @@ def load_image(result, name, colour):
 
 def add_displacement(result, nodes, links, texture, vectors, row):
     """Heights along the normal, or, where they were baked, vectors: these follow overhangs."""
-    if vectors and result.has_map("vector_displacement"):
+    space = result.vector_space() if vectors else ""
+    if space:
         displace = nodes.new("ShaderNodeVectorDisplacement")
         spaces = {"object": "OBJECT", "blender": "TANGENT"}
-        space = exr_attributes(result.map("vector_displacement")).get("patina_space", "object")
         if space not in spaces:
             raise ResultError(f"vector_displacement.exr is in the tangent space '{space}', which Blender does not read: "
                               "bake it in object space")
@@ -124,15 +124,19 @@ def set_creases(mesh, creases, corners):
     work.free()
 
 
-def import_mesh(result, adaptive):
-    polygons = result.polygons()
+def import_mesh(result, adaptive, vectors=True):
+    # Blender has no Loop subdivision, and Cycles no tangents on what it subdivides itself: there, the limit surface.
+    tangents = vectors and result.vector_space() == "blender"
+    diced = tangents or result.scheme == "loop"
+    adaptive = adaptive and not tangents
+    polygons = result.polygons(diced)
     data = bpy.data.meshes.new(result.name)
     data.from_pydata(polygons.points, [], polygons.faces)
     data.polygons.foreach_set("use_smooth", [True] * len(polygons.faces))
     if polygons.corner_uvs:
         layer = data.uv_layers.new(name="st")
         layer.data.foreach_set("uv", [number for uv in polygons.corner_uvs for number in uv])
-    subdivided = result.scheme == "catmullClark"
+    subdivided = result.scheme == "catmullClark" and not diced
     if subdivided:
         # OpenSubdiv's sharpness of 10 is infinite. Cycles' own subdivision takes a tenth of it as the weight, the
         # modifier its square root.
@@ -144,6 +148,9 @@ def import_mesh(result, adaptive):
     mesh = bpy.data.objects.new(result.name, data)
     bpy.context.collection.objects.link(mesh)
     mesh.rotation_euler.x = turn(result)
+    # Blender ends itself (OpenVDB: a nearly singular matrix) where voxels become smaller than OpenVDB takes: in such
+    # close-ups the mesh is brought to the volume's size, and not the other way round.
+    mesh.scale = [1.0 / result.volume_scale] * 3
     if adaptive:
         modifier = mesh.modifiers.new("Subdivision", "SUBSURF")
         modifier.subdivision_type = "CATMULL_CLARK" if subdivided else "SIMPLE"
@@ -166,7 +173,6 @@ def import_volume(result):
     volume = bpy.data.objects.new(result.name + " volume", data)
     bpy.context.collection.objects.link(volume)
     volume.rotation_euler.x = turn(result)
-    volume.scale = [result.volume_scale] * 3
     # Level sets drawn as a density are a shell around the mesh.
     volume.hide_render = True
     volume.hide_set(True)
@@ -188,7 +194,6 @@ def import_interfaces(result, volume):
         modifier.threshold = 0.0
         modifier.resolution_mode = "GRID"
         item.rotation_euler.x = turn(result)
-        item.scale = [result.volume_scale] * 3
         item.hide_render = True
         made.append(item)
     return made
@@ -202,13 +207,14 @@ def import_result(folder, adaptive=True, flattened=False, volume=True, interface
     """
     result = Result(folder)
     material = make_material(result, flattened, vectors)
-    mesh = import_mesh(result, adaptive)
+    mesh = import_mesh(result, adaptive, vectors)
     mesh.data.materials.append(material)
     if volume and result.volume.exists():
         grids = import_volume(result)
         if interfaces:
             import_interfaces(result, grids)
     bpy.context.view_layer.objects.active = mesh
+    bpy.context.view_layer.update()  # scripts that ask where it is are told
     return mesh
 
 
