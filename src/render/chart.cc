@@ -133,8 +133,9 @@ Chart drawChart(const std::vector<ChartSeries>& series, const ChartOptions& opti
     for (int x = axes.left; x < axes.left + axes.width; ++x)
         chart.image.setRgb(x, axes.top + axes.height, ink);
     for (double x = xStep * std::ceil(xLeast / xStep - 1e-9); x <= xMost * (1.0 + 1e-9); x += xStep)
-        text(fmt::format("{:g}", x), axes.left + axes.width * (x - xLeast) / (xMost - xLeast),
-             axes.top + axes.height + 1.4 * letters, TextAlign::centre);
+        text(fmt::format("{:g}", x + 0.0), // not "-0"
+             axes.left + axes.width * (x - xLeast) / (xMost - xLeast), axes.top + axes.height + 1.4 * letters,
+             TextAlign::centre);
 
     text(options.title, axes.left, 1.8 * letters, TextAlign::left, float(options.width - axes.left));
     text(options.xLabel, axes.left + 0.5 * axes.width, axes.top + axes.height + 2.8 * letters, TextAlign::centre);

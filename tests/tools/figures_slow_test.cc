@@ -50,15 +50,17 @@ TEST_P(AllFigures, IsMade) {
         for (int x = 0; x < image.width; ++x)
             tones.insert(int(image.at(x, y)[0] * 255.f));
     EXPECT_GT(tones.size(), 15u) << "there is more in it than paper";
-    if (GetParam() == 8)
+    if (GetParam() == 8) {
         for (const std::string environment : {"marine", "rural", "urban"}) {
             const fs::path first = pictureNamed(folder.path() / "f", environment + "_00"),
                            last = pictureNamed(folder.path() / "f", environment + "_24");
             ASSERT_FALSE(first.empty() || last.empty());
             EXPECT_GT(greenness(readPng(last)), greenness(readPng(first)) + 0.03) << environment;
         }
-    if (GetParam() == 11) // five ages below each other and one picture beside them, higher than wide
+    }
+    if (GetParam() == 11) { // five ages below each other and one picture beside them
         EXPECT_GT(image.height, 5 * 25);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Paper, AllFigures, testing::Values(2, 3, 4, 5, 6, 8, 9, 10, 11, 12));

@@ -20,6 +20,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace patina::tool {
 
@@ -27,39 +28,64 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Image imageOfMap(const MapImage& map) {
-    Image image(map.size, map.size);
-    const auto valueAt = [&](std::size_t i) { return map.floats.empty() ? float(map.halves[i]) : map.floats[i]; };
-    const std::size_t count = std::size_t(map.size) * map.size * map.channels;
-    float most = map.channels == 1 ? 1e-30f : 1.f; // of lengths and shares the largest is white
-    for (std::size_t i = 0; i < count && map.channels == 1; ++i)
-        most = std::max(most, valueAt(i));
-    for (int y = 0; y < map.size; ++y)
-        for (int x = 0; x < map.size; ++x) {
-            const std::size_t first = (std::size_t(y) * map.size + x) * map.channels;
-            Imath::V3f colour;
-            for (int c = 0; c < 3; ++c) {
-                const float value = valueAt(first + (map.channels == 1 ? 0 : c)) / most;
-                colour[c] = map.channels == 1 ? std::max(0.f, value) : float(encodeSrgb(value));
-            }
-            image.setRgb(x, y, colour);
-        }
-    return image;
-}
-
-// The part of a map that the model's charts use: outside them are only their gutters.
-Image cutToCharts(const Image& map, const SurfaceMesh& surface) {
+// The values of a map as they are; of the part that the model's charts use, for outside them are only their gutters.
+Image chartsOf(const MapImage& map, const SurfaceMesh& surface) {
     Imath::Box2f charts;
     for (const Imath::V2f& uv : surface.uvs)
         charts.extendBy(uv);
-    const auto texel = [](float share, int size) { return std::clamp(int(std::lround(share * float(size))), 0, size); };
-    const int left = texel(charts.min.x, map.width), right = texel(charts.max.x, map.width);
-    const int top = texel(1.f - charts.max.y, map.height), bottom = texel(1.f - charts.min.y, map.height);
-    Image cut(right - left, bottom - top);
-    for (int y = 0; y < cut.height; ++y)
-        for (int x = 0; x < cut.width; ++x)
-            cut.setRgb(x, y, map.rgb(left + x, top + y));
-    return cut.empty() ? map : cut;
+    const auto texel = [&](float share) { return std::clamp(int(std::lround(share * float(map.size))), 0, map.size); };
+    int left = texel(charts.min.x), right = texel(charts.max.x);
+    int top = texel(1.f - charts.max.y), bottom = texel(1.f - charts.min.y);
+    if (right <= left || bottom <= top)
+        left = top = 0, right = bottom = map.size;
+    Image values(right - left, bottom - top);
+    for (int y = 0; y < values.height; ++y)
+        for (int x = 0; x < values.width; ++x) {
+            const std::size_t first = (std::size_t(top + y) * map.size + std::size_t(left + x)) * map.channels;
+            Imath::V3f value;
+            for (int c = 0; c < 3; ++c) {
+                const std::size_t i = first + std::size_t(map.channels == 1 ? 0 : c);
+                value[c] = map.floats.empty() ? float(map.halves[i]) : map.floats[i];
+            }
+            values.setRgb(x, y, value);
+        }
+    return values;
+}
+
+// The value that this share of all texels is below, of the largest channel.
+float quantile(const Image& values, double share) {
+    std::vector<float> all;
+    for (int y = 0; y < values.height; ++y)
+        for (int x = 0; x < values.width; ++x) {
+            const Imath::V3f c = values.rgb(x, y);
+            all.push_back(std::max({c.x, c.y, c.z}));
+        }
+    const auto place = all.begin() + std::ptrdiff_t(share * double(all.size() - 1));
+    std::nth_element(all.begin(), place, all.end());
+    return *place;
+}
+
+// What is shown as black and white, and how that is said.
+struct Tones {
+    float black = 0.f, white = 1.f;
+    std::string words;
+};
+
+// Colours of the diffuse light as they are. Lobes, often dark, to their brightest; lengths from nothing to the largest;
+// other numbers over their range. But for a few texels, the borders of charts.
+Tones tonesOf(const MapImage& map, const Image& values) {
+    if (map.name.rfind("lobe_", 0) == 0) {
+        const float white = std::max(quantile(values, 0.999), 1e-6f);
+        return {0.f, white, fmt::format(" (white: {:.2g})", white)};
+    }
+    if (map.channels == 3)
+        return {};
+    if (map.name.rfind("thickness_", 0) == 0) {
+        const float white = std::max(quantile(values, 0.999), 1e-6f);
+        return {0.f, white, fmt::format(" (white: {:.2g} µm)", white)};
+    }
+    const float black = quantile(values, 0.02), white = std::max(quantile(values, 0.98), black + 1e-3f);
+    return {black, white, fmt::format(" (black: {:.2f}, white: {:.2f})", black, white)};
 }
 
 ChartOptions chartOptions(const Options& options, const std::string& y, bool stacked) {
@@ -150,7 +176,7 @@ LabelledImage FigureMaker::panel(const FigurePanel& what, const std::string& oth
     input.inPlace = what.inPlace;
     switch (what.kind) {
     case FigurePanel::Kind::map:
-        return {map(what, options), what.label};
+        return map(what, options);
     case FigurePanel::Kind::slice:
         return {
             makeSection(*made_.volume, materials_, input, options.pictureSize, "", console_, made_.task->model.region)
@@ -170,7 +196,7 @@ LabelledImage FigureMaker::panel(const FigurePanel& what, const std::string& oth
     return {readPng(file), what.label};
 }
 
-Image FigureMaker::map(const FigurePanel& what, const Options& options) {
+LabelledImage FigureMaker::map(const FigurePanel& what, const Options& options) {
     const StackOptics optics = opticsOf(*made_.volume, materials_, options);
     BakeOptions bakeOptions;
     bakeOptions.resolution = options.pictureSize;
@@ -183,7 +209,14 @@ Image FigureMaker::map(const FigurePanel& what, const Options& options) {
         throw RunError(what.name, fmt::format("there is no map '{}'", what.map),
                        fmt::format("there are {}", fmt::join(names, ", ")));
     }
-    return cutToCharts(imageOfMap(*map), made_.task->model.surface);
+    Image image = chartsOf(*map, made_.task->model.surface);
+    const Tones tones = tonesOf(*map, image);
+    for (float& value : image.pixels) {
+        value = std::clamp((value - tones.black) / (tones.white - tones.black), 0.f, 1.f);
+        if (map->channels == 3)
+            value = float(encodeSrgb(value));
+    }
+    return {std::move(image), what.label + tones.words};
 }
 
 Image FigureMaker::stages(const FigurePanel& what, const Options& options) const {
@@ -212,8 +245,8 @@ Image FigureMaker::diagram(const FigurePanel& what, const Options& options) cons
     for (const std::string& environment : what.environments) {
         const WeatherPlan plan = readWeatherPlan(findDataFolder(), environment, "copper");
         DiagramColumn column{environment, named(plan.metal), {}};
-        const auto add = [&](const std::string& material, const std::string& when) {
-            DiagramStage stage{named(material), when, {}};
+        const auto add = [&](const std::string& material, std::vector<std::string> when) {
+            DiagramStage stage{named(material), std::move(when), {}};
             for (const auto& [part, share] : partsOf(material))
                 stage.parts.push_back(named(part, share));
             std::sort(stage.parts.begin(), stage.parts.end(),
@@ -221,16 +254,21 @@ Image FigureMaker::diagram(const FigurePanel& what, const Options& options) cons
             column.stages.push_back(std::move(stage));
         };
         for (const WeatherOxide& oxide : plan.oxides)
-            add(oxide.material,
-                fmt::format("towards {:g} µm; two thirds of it after {:g} years", oxide.thicknessUm, oxide.years));
+            add(oxide.material, {fmt::format("towards {:g} µm,", oxide.thicknessUm),
+                                 fmt::format("two thirds after {:g} years", oxide.years)});
         for (const WeatherMineral& mineral : plan.minerals) {
-            std::string when =
-                fmt::format("from year {:g}, everywhere by year {:g}", mineral.begins.first, mineral.begins.second);
+            std::vector<std::string> when{
+                fmt::format("from year {:g}, everywhere by {:g}", mineral.begins.first, mineral.begins.second)};
             for (const WeatherConversion& turning : plan.conversions)
                 if (turning.from == mineral.material)
-                    when += fmt::format("; half becomes {} in {:g} years", spaced(turning.to), turning.halfLifeYears);
+                    when.push_back(
+                        fmt::format("half becomes {} in {:g} years", spaced(turning.to), turning.halfLifeYears));
             add(mineral.material, when);
         }
+        for (const WeatherDeposit& deposit : plan.deposits)
+            if (!column.stages.empty())
+                column.stages.back().when.push_back(
+                    fmt::format("{} settles from year {:g}", spaced(deposit.material), deposit.begins));
         columns.push_back(std::move(column));
     }
     std::vector<DiagramColour> key;

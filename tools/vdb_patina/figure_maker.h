@@ -32,7 +32,7 @@ class FigureMaker {
     Image stages(const FigurePanel& what, const Options& options) const;
     Image diagram(const FigurePanel& what, const Options& options) const;
     Image curves(const FigurePanel& what, const Options& options) const;
-    Image map(const FigurePanel& what, const Options& options);
+    LabelledImage map(const FigurePanel& what, const Options& options);
     Imath::V3f colourOf(const std::string& material) const;
     void make(const FigurePanel& what, const std::string& model, const Options& options);
 

@@ -34,18 +34,18 @@ void arrowDown(Image& image, int x, int y0, int y1, int size) {
 
 ContactSheet drawStageDiagram(const std::vector<DiagramColumn>& columns, const std::vector<DiagramColour>& key,
                               int width) {
-    std::size_t stages = 0, parts = 0;
+    std::size_t stages = 0, lines = 0; // of text beside a stage
     for (const DiagramColumn& column : columns) {
         stages = std::max(stages, column.stages.size());
         for (const DiagramStage& stage : column.stages)
-            parts = std::max(parts, stage.parts.size());
+            lines = std::max(lines, 1 + stage.when.size() + stage.parts.size());
     }
     if (columns.empty() || stages == 0)
         throw RunError("diagram", "there are no stages to draw");
     const int letters = std::clamp(width / 80, 8, 22), gap = letters;
     const int columnWidth = (width - gap) / int(columns.size()) - gap;
     const int band = letters * 5 / 4, line = letters * 3 / 2;
-    const int slab = band * int(stages + 2), text = std::max(slab, line * int(2 + parts));
+    const int slab = band * int(stages + 2), text = std::max(slab, line * int(lines));
     const int stageHeight = text + 3 * letters, head = 3 * letters;
     const int keyHeight = key.empty() ? 0 : 4 * letters;
 
@@ -75,12 +75,14 @@ ContactSheet drawStageDiagram(const std::vector<DiagramColumn>& columns, const s
             }
             const int x = left + slabWidth + letters, room = columnWidth - slabWidth - letters;
             write(fmt::format("{}  {}", s + 1, stage.layer.name), x, top + line - letters / 2, room);
-            write(stage.when, x, top + 2 * line - letters / 2, room);
-            for (std::size_t p = 0; p < stage.parts.size(); ++p) {
-                const int y = top + int(p + 3) * line - letters / 2;
-                frame(image, x, y - letters + 2, x + letters, y + 2, stage.parts[p].colour);
-                write(fmt::format("{} {:.0f} %", stage.parts[p].name, 100.0 * stage.parts[p].share),
-                      x + letters * 3 / 2, y, room - letters * 3 / 2);
+            int row = 2;
+            for (const std::string& when : stage.when)
+                write(when, x, top + row++ * line - letters / 2, room);
+            for (const DiagramColour& part : stage.parts) {
+                const int y = top + row++ * line - letters / 2;
+                frame(image, x, y - letters + 2, x + letters, y + 2, part.colour);
+                write(fmt::format("{} {:.0f} %", part.name, 100.0 * part.share), x + letters * 3 / 2, y,
+                      room - letters * 3 / 2);
             }
             if (s + 1 < column.stages.size())
                 arrowDown(image, left + slabWidth / 2, bottom + letters / 2, bottom + 5 * letters / 2, letters / 2);

@@ -17,7 +17,7 @@ struct DiagramColour {
 
 struct DiagramStage {
     DiagramColour layer;              ///< what this stage adds on top
-    std::string when;                 ///< "years 2 to 10"
+    std::vector<std::string> when;    ///< lines: "years 2 to 10"
     std::vector<DiagramColour> parts; ///< what it is a mixture of; may be empty
 };
 

@@ -48,7 +48,7 @@ void writeBlend(const StackBlend& blend, float share, const StackOptics& optics,
     scene.up = options.up;
     scene.setting = options.view->setting;
     scene.ground = options.floor;
-    scene.turntable = options.light == "studio";
+    scene.turntable = takesTurntable(options, model.surface.bounds());
     scene.material = [&](const SurfacePoint& point, const Imath::V3f&) {
         std::array<float, StackOptics::maxLayers> thicknessUm;
         return PatinaBsdf(look(point, thicknessUm.data()));

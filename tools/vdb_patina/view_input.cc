@@ -145,6 +145,13 @@ View stillViewOf(const Options& options, const Model& model) {
     return view;
 }
 
+bool takesTurntable(const Options& options, const Imath::Box3f& object) {
+    const Imath::V3f size = object.size();
+    const float height = options.up == UpAxis::y ? size.y : size.z;
+    const float across = std::hypot(size.x, options.up == UpAxis::y ? size.z : size.y);
+    return options.light == "studio" && height > 0.25f * across;
+}
+
 Lights lightsOf(const Options& options, float cameraAzimuthDegrees, const Imath::Box3f& object) {
     const std::string& light = options.light;
     if (light == "studio")

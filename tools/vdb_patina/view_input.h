@@ -38,6 +38,9 @@ View viewOf(const Options& options, const Subject& subject);
 /// The view for a series of pictures: framed on the bare model, whatever grows on it later, and on a floor that stays.
 View stillViewOf(const Options& options, const Model& model);
 
+/// The studio's table is for what stands on it: under a sheet it would be in the picture's corners and say nothing.
+bool takesTurntable(const Options& options, const Imath::Box3f& object);
+
 /// \throws Error (command line), RunError where a panorama cannot be used
 /// \param object  that the studio's lights stand around, in the picture's coordinates
 Lights lightsOf(const Options& options, float cameraAzimuthDegrees, const Imath::Box3f& object);
