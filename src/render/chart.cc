@@ -68,6 +68,8 @@ void drawSpan(Image& image, int x, double from, double to, const Imath::V3f& col
 
 Chart drawChart(const std::vector<ChartSeries>& series, const ChartOptions& options) {
     check(series);
+    if (options.width < 200 || options.height < 110)
+        throw RunError("chart", "it is too small for its axes", "make it 200 × 110 pixels at least");
     Chart chart;
     chart.image = Image(options.width, options.height);
     for (int y = 0; y < options.height; ++y)

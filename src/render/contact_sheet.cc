@@ -86,12 +86,22 @@ bool drawText(Image& image, const std::string& words, float x, float y, int heig
         size = OIIO::ImageBufAlgo::text_size(text, height, font);
     }
     const float shift = align == TextAlign::left ? 0.f : align == TextAlign::centre ? 0.5f : 1.f;
-    OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeDesc::FLOAT);
-    OIIO::ImageBuf buffer(spec, image.pixels.data());
-    const std::vector<float> colour = {ink.x, ink.y, ink.z, 1.f};
     const int left = int(std::lround(x - shift * float(size.width()))), baseline = int(std::lround(y));
-    const bool drawn = OIIO::ImageBufAlgo::render_text(buffer, left, baseline, text, height, font,
-                                                       OIIO::cspan<float>(colour.data(), image.channels));
+    // Drawn on a line of its own and then laid over the picture: what would lie outside the picture OpenImageIO ends the
+    // program for.
+    Image line(size.width() + 2 * height + 4, 3 * height, 1);
+    OIIO::ImageBuf buffer(OIIO::ImageSpec(line.width, line.height, 1, OIIO::TypeDesc::FLOAT), line.pixels.data());
+    const float white = 1.f;
+    const bool drawn =
+        OIIO::ImageBufAlgo::render_text(buffer, 2, 2 * height, text, height, font, OIIO::cspan<float>(&white, 1));
+    for (int row = 0; row < line.height; ++row)
+        for (int column = 0; column < line.width; ++column) {
+            const int px = left + column - 2, py = baseline + row - 2 * height;
+            const float cover = std::clamp(line.at(column, row)[0], 0.f, 1.f);
+            if (cover > 0.f && px >= 0 && px < image.width && py >= 0 && py < image.height)
+                for (int c = 0; c < std::min(3, image.channels); ++c)
+                    image.at(px, py)[c] += (ink[c] - image.at(px, py)[c]) * cover;
+        }
     for (const std::size_t place : mus)
         drawStem(image, text, place, left, baseline, height, font, ink);
     return drawn;

@@ -111,6 +111,14 @@ TEST(ContactSheet, aMicrometreIsNotAUm) {
     EXPECT_LT(right, lastOfWord - 30) << "before the m";
 }
 
+TEST(ContactSheet, textOutsideThePictureIsLeftOut) {
+    Image image(20, 20, 3, 1.f);
+    for (const auto& [x, y] : {std::pair(5.f, 100.f), {5.f, -100.f}, {500.f, 10.f}, {-500.f, 10.f}})
+        drawText(image, "12 \u00b5m", x, y, 12, Imath::V3f(0.f));
+    for (const float value : image.pixels)
+        ASSERT_EQ(value, 1.f);
+}
+
 TEST(ContactSheet, refusesNoPicturesAndBrokenOnes) {
     EXPECT_THROW(makeContactSheet({}), RunError);
     EXPECT_THROW(makeContactSheet({{Image(), "a"}}), RunError);

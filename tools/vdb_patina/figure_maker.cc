@@ -84,14 +84,14 @@ Tones tonesOf(const MapImage& map, const Image& values) {
         const float white = std::max(quantile(values, 0.999), 1e-6f);
         return {0.f, white, fmt::format(" (white: {:.2g} µm)", white)};
     }
-    const float black = quantile(values, 0.02), white = std::max(quantile(values, 0.98), black + 1e-3f);
+    const float black = quantile(values, 0.02), white = std::max(quantile(values, 0.98), black + 0.05f);
     return {black, white, fmt::format(" (black: {:.2f}, white: {:.2f})", black, white)};
 }
 
 ChartOptions chartOptions(const Options& options, const std::string& y, bool stacked) {
     ChartOptions chart;
-    chart.width = options.pictureSize;
-    chart.height = options.pictureSize * 9 / 16;
+    chart.width = std::max(options.pictureSize, 240); // axes and legend need room
+    chart.height = chart.width * 9 / 16;
     chart.xLabel = "years";
     chart.yLabel = y;
     chart.stacked = stacked;
