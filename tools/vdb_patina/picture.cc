@@ -174,7 +174,7 @@ void writePicture(const LayerVolume& volume, const Model& model, const StackOpti
     scene.up = options.up;
     scene.setting = view.setting;
     scene.ground = options.floor && !model.region;
-    scene.turntable = takesTurntable(options, view.setting ? *view.setting : surface.surface().bounds());
+    scene.turntable = takesTurntable(options, view.setting ? *view.setting : surface.shown.bounds());
     if (model.region && options.light == "studio")
         scene.background = Imath::V3f(0.18f);
     scene.material = [&](const SurfacePoint& point, const Imath::V3f&) { return shader.bsdf(point); };
