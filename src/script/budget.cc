@@ -116,6 +116,23 @@ class BlockMarks {
     std::vector<bool> marks_;
 };
 
+// Where marks would take too much themselves: a slab of thickness w with the unit normal n touches, per area,
+// (w + s (|nx| + |ny| + |nz|)) / s³ cubes of side s.
+BandNodes slabNodes(const SurfaceMesh& surface, double voxelSize, double width) {
+    BandNodes nodes;
+    for (const Imath::V3i& t : surface.triangles) {
+        const Imath::V3d a(surface.positions[t[0]]), b(surface.positions[t[1]]), c(surface.positions[t[2]]);
+        const Imath::V3d twice = (b - a).cross(c - a) / (voxelSize * voxelSize);
+        const double area = 0.5 * twice.length();
+        const double spread = 0.5 * (std::abs(twice.x) + std::abs(twice.y) + std::abs(twice.z)); // times the area
+        const auto cubes = [&](double side) { return (area * width + side * spread) / (side * side * side); };
+        nodes.leaves += cubes(8.0);
+        nodes.lower += cubes(128.0);
+        nodes.upper += cubes(4096.0);
+    }
+    return nodes;
+}
+
 // Marks the blocks that segments across the surface touch, from so many voxels inside to so many outside; a sheet has
 // its back and its band behind it.
 BandNodes bandNodes(const SurfaceMesh& surface, double voxelSize, double inside, double outside) {
@@ -130,6 +147,10 @@ BandNodes bandNodes(const SurfaceMesh& surface, double voxelSize, double inside,
     };
     const double behind = surface.closed ? inside : sheetBackVoxels + outside;
     const Imath::V3d margin((std::max(behind, outside) + 8.0) * voxelSize);
+    const Imath::V3d blocks = (Imath::V3d(box.size()) + margin * 2.0) / (8.0 * voxelSize);
+    constexpr double mostMarks = 2147483648.0; // bits: 256 MiB, a cube of 10,000 voxels
+    if (!(blocks.x * blocks.y * blocks.z < mostMarks))
+        return slabNodes(surface, voxelSize, behind + outside);
     BlockMarks marks(blockOf(Imath::V3d(box.min) - margin), blockOf(Imath::V3d(box.max) + margin));
     constexpr double step = 1.5; // voxels between samples: a leaf that is touched by less than that is rare
     const int across = std::max(1, static_cast<int>(std::ceil((behind + outside) / step)));

@@ -75,8 +75,8 @@ TEST(Weather, ExpansionsFollowFromMolarVolumes) {
     const double antlerite = ratio(354.72, 3, 3.9), atacamite = ratio(213.56, 2, 3.76);
     const WeatherPlan urban = plan("urban"), rural = plan("rural");
     EXPECT_NEAR(urban.oxides[0].expansion, 1.0 / (0.85 / cuprite + 0.15 / sulphide), 0.01);
-    EXPECT_NEAR(rural.minerals[0].expansion, 1.0 / (0.6 / posnjakite + 0.15 / brochantite + 0.15 / atacamite), 0.02);
-    EXPECT_NEAR(urban.minerals[1].expansion, 1.0 / (0.45 / antlerite + 0.44 / brochantite), 0.02);
+    EXPECT_NEAR(rural.minerals[0].expansion, 1.0 / (0.668 / posnjakite + 0.129 / brochantite + 0.103 / atacamite), 0.02);
+    EXPECT_NEAR(urban.minerals[1].expansion, 1.0 / (0.233 / antlerite + 0.667 / brochantite), 0.02);
     EXPECT_GT(rural.minerals[0].expansion, rural.minerals[1].expansion); // posnjakite is the bulkier
 }
 

@@ -161,8 +161,7 @@ void addMapOptions(CLI::App& app, Options& options) {
                  "Also bake vector_displacement.exr: follows overhangs")
         ->group(group);
     app.add_option("--vector-space", options.vectorSpace,
-                   "Its channels: object (default; x, y, z), blender (tangent, normal, bitangent) or materialx (dPdu, "
-                   "dPdv, N)")
+                   "Its channels: object (x, y, z; default), blender (T, N, B) or materialx (dPdu, dPdv, N)")
         ->check(oneOf({"object", "blender", "materialx"}))
         ->type_name("SPACE")
         ->group(group);

@@ -242,7 +242,7 @@ TEST(VoxelGrowth, compactColumnsStandAsHighAsTheirModelSays) {
 
 // A layer so mature that its columns are all but alike: what is left are bias and terraces of the lattice.
 VoxelGrowth mature(GrowthModel model) {
-    VoxelGrowth growth = growthOf(model, 300.0);
+    VoxelGrowth growth = growthOf(model, 400.0);
     return growth;
 }
 
