@@ -47,7 +47,7 @@ OperationReport coat(Workpiece& work, const std::string& material, double thickn
         });
         changed[n] = coatedAny;
     });
-    report.changedIds = updateMaterialIds(volume, 1e-3, &changed);
+    report.changedIds = updateMaterialIds(volume, 1e-3, report.grewBand ? nullptr : &changed);
     return report;
 }
 

@@ -279,7 +279,7 @@ OperationReport erode(Workpiece& work, double thicknessUm, const ThicknessMap* m
     if (metalHardness && metalDepthVoxels(volume) == 0.0)
         grids.metal.reset(); // it did not come so far
     const bool removed = tidyLayers(volume);
-    report.changedIds = updateMaterialIds(volume, 1e-3, removed ? nullptr : &changed);
+    report.changedIds = updateMaterialIds(volume, 1e-3, removed || report.grewBand ? nullptr : &changed);
     return report;
 }
 

@@ -73,7 +73,7 @@ OperationReport fill(Workpiece& work, const std::string& material, double height
     });
     if (!extends && std::find(changed.begin(), changed.end(), 1) == changed.end())
         volume.removeLayer(volume.layerCount());
-    report.changedIds = updateMaterialIds(volume, 1e-3, &changed);
+    report.changedIds = updateMaterialIds(volume, 1e-3, report.grewBand ? nullptr : &changed);
     return report;
 }
 

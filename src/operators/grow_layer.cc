@@ -178,7 +178,7 @@ OperationReport growLayer(Workpiece& work, const std::string& material, double t
         report.clampedBelow += c.below;
         report.clampedAbove += c.above;
     }
-    report.changedIds = updateMaterialIds(volume, 1e-3, &changed);
+    report.changedIds = updateMaterialIds(volume, 1e-3, report.grewBand ? nullptr : &changed);
     return report;
 }
 

@@ -54,7 +54,7 @@ OperationReport offset(Workpiece& work, const std::string& material, double radi
     if (!extends && std::find(changed.begin(), changed.end(), 1) == changed.end())
         volume.removeLayer(volume.layerCount());
     // Where the palette is as it was, only the changed leaves are looked at.
-    report.changedIds = updateMaterialIds(volume, 1e-3, &changed);
+    report.changedIds = updateMaterialIds(volume, 1e-3, report.grewBand ? nullptr : &changed);
     return report;
 }
 

@@ -72,7 +72,7 @@ OperationReport cut(Workpiece& work, HeightOf heightOf) {
         }
     });
     const bool removed = tidyLayers(volume);
-    report.changedIds = updateMaterialIds(volume, 1e-3, removed ? nullptr : &changed);
+    report.changedIds = updateMaterialIds(volume, 1e-3, removed || report.grewBand ? nullptr : &changed);
     return report;
 }
 
