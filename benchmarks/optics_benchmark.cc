@@ -6,6 +6,7 @@
 #include "base/random.h"
 #include "optics/band_lanes.h"
 #include "optics/kubelka_munk.h"
+#include "optics/layer_optics.h"
 #include "optics/layer_stack.h"
 #include "optics/material_library.h"
 
@@ -131,7 +132,8 @@ PATINA_INLINE void foldTabled(const TabledStack& stack, const float* um, Spectru
 // ---------------------------------------------------------------------
 
 struct ThreeChannels {
-    float kappa[3][layerCount], scattering[3][layerCount], absorption[3][layerCount], base[3];
+    float twoKappa[3][layerCount], scattering[3][layerCount], twoAbsorption[3][layerCount], onePlus[3][layerCount],
+        oneMinus[3][layerCount], base[3];
 };
 
 /// The shipping fold for sixteen points in one channel: `um` has sixteen thicknesses of each layer in a row.
@@ -140,16 +142,14 @@ PATINA_INLINE void foldPoints(const ThreeChannels& stack, const std::array<Spect
                               std::array<Spectrum, 3>& result) {
     using Points = BandLanes<width>;
     for (int c = 0; c < 3; ++c) {
-        Points over = Points::constant(stack.base[c]), under = Points::constant(1.f);
+        Points back = Points::constant(stack.base[c]), lost = Points::constant(1.f - stack.base[c]);
         for (int k = 0; k < layerCount; ++k) {
-            const Decay<width> e = decay(Points::load(um[k]) * stack.kappa[c][k]);
-            const Points u = e.gone * (e.left + 1.f), w = 2.f - u;
-            const Points turned = (under - over) * stack.scattering[c][k];
-            const Points next = u * (turned - over * stack.absorption[c][k]) + w * over;
-            under = u * (turned + under * stack.absorption[c][k]) + w * under;
-            over = next;
+            const Points h = halfGone(Points::load(um[k]) * stack.twoKappa[c][k]);
+            const Points next = back * (1.f - h * stack.onePlus[c][k]) + lost * (h * stack.scattering[c][k]);
+            lost = lost * (1.f - h * stack.oneMinus[c][k]) + back * (h * stack.twoAbsorption[c][k]);
+            back = next;
         }
-        (over / under).store(result[c]);
+        (back / (back + lost)).store(result[c]);
     }
 }
 
@@ -234,11 +234,12 @@ void ThreeChannelVector(benchmark::State& state) {
         stack.base[c] = materials().at("copper").reflectance[bands[c]];
         for (int k = 0; k < layerCount; ++k) {
             const Material& m = materials().at(layerNames[k]);
-            const float absorption = m.absorption[bands[c]], scattering = m.scattering[bands[c]];
-            const float kappa = std::sqrt(absorption * (absorption + 2.f * scattering));
-            stack.kappa[c][k] = kappa;
-            stack.scattering[c][k] = scattering / kappa;
-            stack.absorption[c][k] = absorption / kappa;
+            const LayerOptics optics = LayerOptics::of(m.absorption[bands[c]], m.scattering[bands[c]]);
+            stack.twoKappa[c][k] = optics.twoKappa;
+            stack.scattering[c][k] = optics.scattering;
+            stack.twoAbsorption[c][k] = optics.twoAbsorption;
+            stack.onePlus[c][k] = optics.onePlus;
+            stack.oneMinus[c][k] = optics.oneMinus;
         }
     }
     std::vector<std::array<Spectrum, layerCount>> um(pointCount / bandCount);

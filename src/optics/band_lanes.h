@@ -3,6 +3,7 @@
 // Every band goes through the same IEEE operations in the same order whatever the width, so the bits are the same on
 // machines with wide and with narrow registers.
 
+#include "optics/rgb_lanes.h"
 #include "optics/spectrum.h"
 
 #include <cstdint>
@@ -104,68 +105,102 @@ struct Decay {
     BandLanes<width> gone;
 };
 
-/// For x >= 0; beyond exp(-60) it stays there: nothing that is left of it becomes a denormal number, which would cost a
-/// hundred times as much.
-/// -x = n ln 2 + r with |r| <= ln 2 / 2, a polynomial for exp(r) - 1 (Cephes' coefficients), and n added to the
-/// exponent of exp(r). Where n = 0 the polynomial is 1 - exp(-x) without the cancellation.
+/// unit · exp(-x) = scale (1 - lost), where scale is unit · 2^n.
 template <int width>
-PATINA_INLINE Decay<width> decay(const BandLanes<width>& x) {
+struct ScaledDecay {
+    BandLanes<width> scale;
+    BandLanes<width> lost;
+};
+
+/// For x >= 0; beyond exp(-60) it stays there: nothing that is left of it becomes a denormal number, which would cost a
+/// hundred times as much. `unit` is a power of two.
+/// x = t - n ln 2 with |t| <= ln 2 / 2 and n <= 0; lost = 1 - exp(-t) = t - t² p(t), p fitted to least error (2e-8 of
+/// itself). One product n ln 2 is enough: what it rounds off is multiplied by 2^n.
+template <int width>
+PATINA_INLINE ScaledDecay<width> scaledDecay(const BandLanes<width>& x, float unit) {
     using Bits = typename Register<width>::Bits;
     constexpr float roundToInteger = 12582912.f; // 1.5 · 2^23: what is added to it leaves its integer in the low bits
     const BandLanes<width> y = atMost(x, 60.f);
     const BandLanes<width> shifted = roundToInteger - y * 1.44269504088896341f;
     const BandLanes<width> n = shifted - roundToInteger;
-    const BandLanes<width> r = n * 2.12194440e-4f - (y + n * 0.693359375f);
-    BandLanes<width> p = r * 1.9875691500e-4f + 1.3981999507e-3f;
-    p = p * r + 8.3334519073e-3f;
-    p = p * r + 4.1665795894e-2f;
-    p = p * r + 1.6666665459e-1f;
-    p = p * r + 5.0000001201e-1f;
-    const BandLanes<width> grown = (p * r) * r + r; // exp(r) - 1
-    Decay<width> result;
-    result.left = grown + 1.f;
-    for (int i = 0; i < BandLanes<width>::registers; ++i) {
-        Bits exponent, mantissa;
-        std::memcpy(&exponent, &shifted.part[i], sizeof(exponent));
-        std::memcpy(&mantissa, &result.left.part[i], sizeof(mantissa));
-        const Bits sum = mantissa + (exponent << 23);
-        std::memcpy(&result.left.part[i], &sum, sizeof(sum));
+    const BandLanes<width> t = y + n * 0.693147180559945309f;
+    const BandLanes<width> t2 = t * t;
+    const BandLanes<width> high = (4.1666204126e-2f - t * 8.3689541340e-3f) + t2 * 1.3950603060e-3f;
+    const BandLanes<width> p = (5.0000000957e-1f - t * 1.6666518301e-1f) + t2 * high;
+    ScaledDecay<width> result;
+    result.lost = t - t2 * p;
+    std::uint32_t unitBits;
+    std::memcpy(&unitBits, &unit, sizeof(unit));
+    for (int i = 0; i < BandLanes<width>::registers; ++i) { // n is added to the exponent of `unit`
+        Bits integer;
+        std::memcpy(&integer, &shifted.part[i], sizeof(integer));
+        const Bits scale = (integer << 23) + unitBits;
+        std::memcpy(&result.scale.part[i], &scale, sizeof(scale));
     }
-    // n > -1/2: no halving took place.
-    result.gone = whereGreater(n, -0.5f, 0.f - grown, 1.f - result.left);
     return result;
 }
 
-/// Sum over the bands of a · b and of two more, into rgb[0 … 2]: eights, then fours, then twos are added, in the same
-/// order for every width.
+/// exp(-x) alone.
 template <int width>
-PATINA_INLINE void dotBands(const BandLanes<width>& a, const Spectrum* weights, float* rgb) {
-    using Four = Register<4>::Floats;
-    using Eight = Register<8>::Floats;
-    Four fours[3];
-    for (int channel = 0; channel < 3; ++channel) {
-        const BandLanes<width> product = a * BandLanes<width>::load(weights[channel]);
-        if constexpr (width == 4) {
-            fours[channel] = (product.part[0] + product.part[2]) + (product.part[1] + product.part[3]);
-        } else {
-            Eight eights;
-            if constexpr (width == 8) {
-                eights = product.part[0] + product.part[1];
-            } else {
-                eights = __builtin_shufflevector(product.part[0], product.part[0], 0, 1, 2, 3, 4, 5, 6, 7) +
-                         __builtin_shufflevector(product.part[0], product.part[0], 8, 9, 10, 11, 12, 13, 14, 15);
-            }
-            fours[channel] = __builtin_shufflevector(eights, eights, 0, 1, 2, 3) +
-                             __builtin_shufflevector(eights, eights, 4, 5, 6, 7);
-        }
+PATINA_INLINE BandLanes<width> remaining(const BandLanes<width>& x) {
+    const ScaledDecay<width> e = scaledDecay(x, 1.f);
+    return e.scale - e.scale * e.lost;
+}
+
+/// (1 - exp(-x)) / 2. Where n = 0 it is lost / 2: there is no cancellation.
+template <int width>
+PATINA_INLINE BandLanes<width> halfGone(const BandLanes<width>& x) {
+    const ScaledDecay<width> e = scaledDecay(x, 0.5f);
+    return (0.5f - e.scale) + e.scale * e.lost;
+}
+
+template <int width>
+PATINA_INLINE Decay<width> decay(const BandLanes<width>& x) {
+    const ScaledDecay<width> e = scaledDecay(x, 1.f);
+    const BandLanes<width> lost = e.scale * e.lost;
+    return {e.scale - lost, (1.f - e.scale) + lost};
+}
+
+/// Element q of every four, four times.
+template <int q>
+PATINA_INLINE Register<4>::Floats repeated(const Register<4>::Floats& x) {
+    return __builtin_shufflevector(x, x, q, q, q, q);
+}
+template <int q>
+PATINA_INLINE Register<8>::Floats repeated(const Register<8>::Floats& x) {
+    return __builtin_shufflevector(x, x, q, q, q, q, 4 + q, 4 + q, 4 + q, 4 + q);
+}
+template <int q>
+PATINA_INLINE Register<16>::Floats repeated(const Register<16>::Floats& x) {
+    return __builtin_shufflevector(x, x, q, q, q, q, 4 + q, 4 + q, 4 + q, 4 + q, 8 + q, 8 + q, 8 + q, 8 + q, 12 + q,
+                                   12 + q, 12 + q, 12 + q);
+}
+template <int q, int width>
+PATINA_INLINE BandLanes<width> weighted(const BandLanes<width>& bands, const ChannelWeights& weights) {
+    BandLanes<width> result = BandLanes<width>::load(weights[q]);
+    for (int i = 0; i < BandLanes<width>::registers; ++i) {
+        result.part[i] = repeated<q>(bands.part[i]) * result.part[i];
     }
-    const Four twos01 = __builtin_shufflevector(fours[0], fours[1], 0, 4, 1, 5) +
-                        __builtin_shufflevector(fours[0], fours[1], 2, 6, 3, 7);
-    const Four twos2 = __builtin_shufflevector(fours[2], fours[2], 0, 0, 1, 1) +
-                       __builtin_shufflevector(fours[2], fours[2], 2, 2, 3, 3);
-    const Four sum =
-        __builtin_shufflevector(twos01, twos2, 0, 1, 4, 5) + __builtin_shufflevector(twos01, twos2, 2, 3, 6, 7);
-    std::memcpy(rgb, &sum, 3 * sizeof(float));
+    return result;
+}
+
+/// The sums over the bands, in the same order for every width.
+template <int width>
+PATINA_INLINE RgbLanes toRgb(const BandLanes<width>& bands, const ChannelWeights& weights) {
+    const BandLanes<width> sums = (weighted<0>(bands, weights) + weighted<1>(bands, weights)) +
+                                  (weighted<2>(bands, weights) + weighted<3>(bands, weights));
+    if constexpr (width == 4) {
+        return (sums.part[0] + sums.part[2]) + (sums.part[1] + sums.part[3]);
+    } else {
+        Register<8>::Floats eight;
+        if constexpr (width == 8) {
+            eight = sums.part[0] + sums.part[1];
+        } else {
+            eight = __builtin_shufflevector(sums.part[0], sums.part[0], 0, 1, 2, 3, 4, 5, 6, 7) +
+                    __builtin_shufflevector(sums.part[0], sums.part[0], 8, 9, 10, 11, 12, 13, 14, 15);
+        }
+        return __builtin_shufflevector(eight, eight, 0, 1, 2, 3) + __builtin_shufflevector(eight, eight, 4, 5, 6, 7);
+    }
 }
 
 } // namespace patina

@@ -4,6 +4,7 @@
 #include "optics/colour.h"
 #include "optics/fresnel.h"
 #include "optics/kubelka_munk.h"
+#include "optics/present_layers.h"
 #include "optics/stack_kernel.h"
 
 #include <algorithm>
@@ -18,21 +19,13 @@ using Imath::V3f;
 
 /// Thicker than this is the same as opaque or, for what neither absorbs nor scatters, the same as nothing.
 constexpr float thickestUm = 1e6f;
-/// Dielectrics that reflect less than this at normal incidence are taken to reflect less than all at grazing too: an
-/// interface that fades out must fade at every angle.
-constexpr float fullEdgeReflectance = 0.02f;
 
 /// How much of its own interface a film of this thickness has, 0…1: x⁴ / (1 + x⁴).
 float interfaceWeight(float thicknessUm) {
-    const float x = thicknessUm / StackOptics::interfaceThicknessUm;
+    const float x = thicknessUm * (1.f / StackOptics::interfaceThicknessUm);
     const float x2 = x * x;
     const float x4 = x2 * x2;
     return x < 100.f ? x4 / (1.f + x4) : 1.f;
-}
-
-float normalDielectric(float below, float above) {
-    const float ratio = (below - above) / (below + above);
-    return ratio * ratio;
 }
 
 /// Whether two materials look the same at any thickness.
@@ -44,45 +37,11 @@ bool sameOptics(const Material& a, const Material& b) {
             a.indexN.values == b.indexN.values && a.indexK.values == b.indexK.values);
 }
 
-const StackKernel& kernel() {
-    static const StackKernel chosen = stackKernel();
-    return chosen;
-}
-
-V3f clippedToGamut(const float* rgb) {
-    return {std::max(rgb[0], 0.f), std::max(rgb[1], 0.f), std::max(rgb[2], 0.f)};
-}
-
-V3f clamped01(const V3f& rgb) {
-    return {std::clamp(rgb.x, 0.f, 1.f), std::clamp(rgb.y, 0.f, 1.f), std::clamp(rgb.z, 0.f, 1.f)};
-}
-
 } // namespace
 
-/// The layers that are there, from bottom to top. Neighbours of one material are one layer: there is no interface
-/// between them, and what depends on thickness (interference, a surface of its own) must not see where it was cut.
-struct StackOptics::PresentLayers {
-    int count = 0;
-    int index[maxLayers]; ///< of the uppermost where several are one
-    float thicknessUm[maxLayers];
-    float weight[maxLayers];
-};
-
-void StackOptics::Layer::setBand(int band, double absorptionPerUm, double scatteringPerUm) {
-    const LayerOptics optics = LayerOptics::of(absorptionPerUm, scatteringPerUm);
-    kappa[band] = optics.kappa;
-    scattering[band] = optics.scattering;
-    absorption[band] = optics.absorption;
-    extinction[band] = optics.extinction;
-}
-
 StackOptics::StackOptics(const std::vector<const Material*>& materials, Model model, const StackFeatures& features)
-    : rgbWeights_(bandWeights(features.colourSpace)), features_(features), model_(model) {
-    for (int channel = 0; channel < 3; ++channel) {
-        V3d one(0.0);
-        one[channel] = 1.0;
-        luminance_[channel] = static_cast<float>(xyzFromLinear(one, features.colourSpace).y);
-    }
+    : features_(features), model_(model) {
+    setColourSpace(features.colourSpace);
     if (materials.empty()) {
         throw RunError("optics", "a stack needs a base material");
     }
@@ -93,7 +52,7 @@ StackOptics::StackOptics(const std::vector<const Material*>& materials, Model mo
     for (const Material* material : materials) {
         Layer layer;
         for (int band = 0; band < bandCount; ++band) {
-            layer.setBand(band, material->absorption[band], material->scattering[band]);
+            layer.optics.setBand(band, material->absorption[band], material->scattering[band]);
         }
         layer.reflectance = material->reflectance;
         layer.refractiveIndex = std::max(material->refractiveIndex, 1.f);
@@ -107,7 +66,7 @@ StackOptics::StackOptics(const std::vector<const Material*>& materials, Model mo
             // picture can show. R∞ of K, S is the metal's reflectance; 50 / µm is a skin of some ten nanometres.
             for (int band = 0; band < bandCount; ++band) {
                 const double r = std::clamp(material->reflectance[band], 0.01f, 0.99f);
-                layer.setBand(band, 50.0 * absorptionOverScattering(r), 50.0);
+                layer.optics.setBand(band, 50.0 * absorptionOverScattering(r), 50.0);
             }
             layer.refractiveIndex = 1.f;
         }
@@ -124,6 +83,15 @@ StackOptics::StackOptics(const std::vector<const Material*>& materials, Model mo
             }
         }
         layers_.push_back(layer);
+        Lobe dark;
+        dark.alpha = layer.alpha;
+        dark.roughness = layer.roughness;
+        darkLobes_.push_back(dark);
+    }
+    for (const Layer& below : layers_) {
+        for (const Layer& above : layers_) {
+            interfaces_.push_back(normalDielectric(below.refractiveIndex, above.refractiveIndex));
+        }
     }
     for (std::size_t i = 0; i < internalReflectance_.size(); ++i) {
         internalReflectance_[i] =
@@ -131,25 +99,19 @@ StackOptics::StackOptics(const std::vector<const Material*>& materials, Model mo
     }
 }
 
-namespace {
-
-float lookUpInternal(const std::array<float, 65>& table, float index) {
-    const float position = std::clamp((index - 1.f) * 32.f, 0.f, 63.999f);
-    const int below = static_cast<int>(position);
-    return table[below] + (position - below) * (table[below + 1] - table[below]);
-}
-
-} // namespace
-
-StackOptics StackOptics::in(ColourSpace space) const {
-    StackOptics result = *this;
-    result.features_.colourSpace = space;
-    result.rgbWeights_ = bandWeights(space);
+void StackOptics::setColourSpace(ColourSpace space) {
+    features_.colourSpace = space;
+    weights_ = channelWeights(bandWeights(space));
     for (int channel = 0; channel < 3; ++channel) {
         V3d one(0.0);
         one[channel] = 1.0;
-        result.luminance_[channel] = static_cast<float>(xyzFromLinear(one, space).y);
+        luminance_[channel] = static_cast<float>(xyzFromLinear(one, space).y);
     }
+}
+
+StackOptics StackOptics::in(ColourSpace space) const {
+    StackOptics result = *this;
+    result.setColourSpace(space);
     return result;
 }
 
@@ -239,157 +201,11 @@ Spectrum StackOptics::bodyReflectance(const float* thicknessUm) const {
     input.base = &layers_[0].reflectance;
     for (int k = 0; k < present.count; ++k) {
         const Layer& layer = layers_[present.index[k]];
-        input.layers[k] = {&layer.kappa,      &layer.scattering,      &layer.absorption,
-                           &layer.extinction, present.thicknessUm[k], 0.f};
+        input.layers[k] = {&layer.optics, &layer.specular, present.thicknessUm[k], 0.f};
     }
     Spectrum result;
-    kernel().foldBody(input, result);
+    bestStackKernel().foldBody(input, result);
     return result;
-}
-
-void StackOptics::evaluateConserving(const Spectrum& base, const PresentLayers& present, Appearance& out) const {
-    KernelInput input;
-    input.count = present.count;
-    input.base = &base;
-    input.rgbWeights = rgbWeights_.data();
-    float surfaceIndex = 1.f; // bare metal meets the air by its own n and k
-    for (int k = 0; k < present.count; ++k) {
-        const Layer& layer = layers_[present.index[k]];
-        float interfaceAbove = 0.f;
-        if (k + 1 < present.count) {
-            const Layer& above = layers_[present.index[k + 1]];
-            interfaceAbove = present.weight[k] * present.weight[k + 1] *
-                             normalDielectric(layer.refractiveIndex, above.refractiveIndex);
-        }
-        surfaceIndex += present.weight[k] * (layer.refractiveIndex - surfaceIndex);
-        input.layers[k] = {&layer.kappa,      &layer.scattering,      &layer.absorption,
-                           &layer.extinction, present.thicknessUm[k], interfaceAbove};
-    }
-    const float airReflectance = normalDielectric(surfaceIndex, 1.f);
-    const float airEdge = std::min(1.f, airReflectance / fullEdgeReflectance);
-    input.k1 = airReflectance;
-    input.k2 = lookUpInternal(internalReflectance_, surfaceIndex);
-    input.wantEdge = airEdge < 1.f;
-
-    KernelOutput output;
-    kernel().foldConserving(input, output);
-
-    for (std::size_t i = 0; i < layers_.size(); ++i) {
-        Lobe& lobe = out.lobes[i];
-        lobe.colour = lobe.edgeColour = V3f(0.f);
-        lobe.air = lobe.airEdge = 0.f;
-        lobe.alpha = layers_[i].alpha;
-        lobe.roughness = layers_[i].roughness;
-    }
-    out.diffuse = clippedToGamut(output.diffuse);
-    V3f bodySum = out.diffuse;
-    out.lobes[0].colour = clippedToGamut(output.lobes[0]);
-    bodySum += out.lobes[0].colour;
-    for (int k = 0; k < present.count; ++k) {
-        Lobe& lobe = out.lobes[present.index[k]];
-        lobe.colour = clippedToGamut(output.lobes[k + 1]);
-        bodySum += lobe.colour;
-    }
-    // A spectrum below 1 may still leave the gamut (gold's red is 1.04): clip, so that the channels conserve too.
-    const float most = 1.f - airReflectance;
-    for (int channel = 0; channel < 3; ++channel) {
-        if (bodySum[channel] > most) {
-            const float scale = most / bodySum[channel];
-            out.diffuse[channel] *= scale;
-            for (Lobe& lobe : out.lobes) {
-                lobe.colour[channel] *= scale;
-            }
-            bodySum[channel] = most;
-        }
-    }
-    if (input.wantEdge) {
-        const V3f edge = clippedToGamut(output.edge);
-        Lobe& metal = out.lobes[0];
-        for (int channel = 0; channel < 3; ++channel) {
-            const float room = most - (bodySum[channel] - metal.colour[channel]);
-            const float rising = std::max(std::min(edge[channel], room), metal.colour[channel]);
-            metal.edgeColour[channel] = metal.colour[channel] + (1.f - airEdge) * (rising - metal.colour[channel]);
-        }
-    } else {
-        out.lobes[0].edgeColour = out.lobes[0].colour;
-    }
-    for (int k = 0; k < present.count; ++k) {
-        Lobe& lobe = out.lobes[present.index[k]];
-        lobe.edgeColour = lobe.colour;
-    }
-    // The air's reflection has the roughness of the topmost film; as that film fades out, of the one below it.
-    float left = 1.f;
-    for (int k = present.count - 1; k >= -1; --k) {
-        const float share = k >= 0 ? left * present.weight[k] : left;
-        left -= share;
-        Lobe& lobe = out.lobes[k >= 0 ? present.index[k] : 0];
-        lobe.air = share * airReflectance;
-        lobe.airEdge = share * airEdge;
-        lobe.colour += V3f(lobe.air);
-        lobe.edgeColour += V3f(lobe.airEdge);
-    }
-
-    flatten(airReflectance, out);
-}
-
-// What metals mirror against what is scattered gives `metallic`; the width is the mean of the lobes' alpha², each by
-// its brightness.
-void StackOptics::flatten(float airReflectance, Appearance& out) const {
-    V3f metal(0.f);
-    float brightness = 0.f;
-    float width = 0.f;
-    for (std::size_t i = 0; i < layers_.size(); ++i) {
-        const Lobe& lobe = out.lobes[i];
-        if (layers_[i].isMetal) {
-            metal += lobe.colour - V3f(lobe.air);
-        }
-        const float weight = luminance(lobe.colour);
-        brightness += weight;
-        width += weight * lobe.alpha * lobe.alpha;
-    }
-    const float mirrored = luminance(metal);
-    const float total = mirrored + luminance(out.diffuse);
-    out.metallic = total > 0.f ? mirrored / total : 0.f;
-    out.baseColour = clamped01(metal + out.diffuse);
-    out.flattenedRoughness = brightness > 1e-6f ? std::sqrt(std::sqrt(std::min(width / brightness, 1.f))) : 1.f;
-    out.specular = std::min(airReflectance / 0.08f, 1.f);
-}
-
-void StackOptics::evaluatePaper(const Spectrum& metal, const PresentLayers& present, Appearance& out) const {
-    for (std::size_t i = 0; i < layers_.size(); ++i) {
-        Lobe& lobe = out.lobes[i];
-        lobe = Lobe{};
-        lobe.alpha = layers_[i].alpha;
-        lobe.roughness = layers_[i].roughness;
-    }
-    Spectrum diffuse;
-    Spectrum lobes[maxLayers + 1]; // [0] the metal, [k] present layer k - 1
-    for (int band = 0; band < bandCount; ++band) {
-        // From the top down, so that the transmittance of all that lies above an interface is at hand.
-        StackLight<float> above;
-        for (int k = present.count - 1; k >= 0; --k) {
-            const Layer& layer = layers_[present.index[k]];
-            lobes[k + 1][band] = layer.specular[band] * above.transmittance * above.transmittance;
-            above = onTop(above, StackLight<float>(kubelkaMunkLayer(layer.absorption[band] * layer.kappa[band],
-                                                                    layer.scattering[band] * layer.kappa[band],
-                                                                    present.thicknessUm[k])));
-        }
-        lobes[0][band] = metal[band] * above.transmittance * above.transmittance;
-        const float base = metal[band];
-        diffuse[band] = above.reflectanceAbove +
-                        above.transmittance * base * interreflected(above.transmittance, above.reflectanceBelow, base);
-    }
-    const auto rgbOf = [this](const Spectrum& spectrum) {
-        return clamped01(V3f(linearFromXyz(xyzFromReflectance(spectrum), features_.colourSpace)));
-    };
-    out.diffuse = rgbOf(diffuse);
-    out.lobes[0].colour = out.lobes[0].edgeColour = rgbOf(lobes[0]);
-    for (int k = 0; k < present.count; ++k) {
-        Lobe& lobe = out.lobes[present.index[k]];
-        lobe.colour = lobe.edgeColour = rgbOf(lobes[k + 1]);
-    }
-    const float top = present.count > 0 ? layers_[present.index[present.count - 1]].refractiveIndex : 1.f;
-    flatten(normalDielectric(top, 1.f), out);
 }
 
 } // namespace patina

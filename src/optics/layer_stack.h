@@ -2,6 +2,7 @@
 // The look of a stack of layers on a metal, from their thicknesses.
 
 #include "optics/colour.h"
+#include "optics/layer_optics.h"
 #include "optics/material.h"
 #include "optics/thin_film.h"
 
@@ -81,11 +82,9 @@ class StackOptics {
 
   private:
     struct Layer {
-        Spectrum kappa, scattering, absorption, extinction; ///< as the kernel wants them (stack_kernel.h)
-        Spectrum reflectance;                               ///< base: of the metal
-        Spectrum specular;                                  ///< specular colour of the paper's lobe
-        /// K and S of one band
-        void setBand(int band, double absorptionPerUm, double scatteringPerUm);
+        LayerSpectra optics;
+        Spectrum reflectance; ///< base: of the metal
+        Spectrum specular;    ///< specular colour of the paper's lobe
         float refractiveIndex = 1.f;
         float alpha = 0.f;
         float roughness = 0.f;
@@ -94,20 +93,23 @@ class StackOptics {
         int thinFilm = -1; ///< index into thinFilms_; -1: does not interfere
     };
     struct PresentLayers;
+    struct LightSums;
 
+    void setColourSpace(ColourSpace space);
     PresentLayers presentLayers(const float* thicknessUm) const;
     /// Share of the first present layer's look that is interference; `reflectance` is then the metal's under it.
     float interference(const PresentLayers& present, Spectrum& reflectance) const;
     void evaluateOver(const Spectrum& base, const PresentLayers& present, Appearance& out) const;
     void evaluateConserving(const Spectrum& base, const PresentLayers& present, Appearance& out) const;
     void evaluatePaper(const Spectrum& base, const PresentLayers& present, Appearance& out) const;
-    void flatten(float airReflectance, Appearance& out) const;
-    float luminance(const Imath::V3f& rgb) const { return luminance_.dot(rgb); }
+    void flatten(const LightSums& sums, float airReflectance, Appearance& out) const;
 
     std::vector<Layer> layers_; ///< [0] is the base
     std::vector<ThinFilmTable> thinFilms_;
-    std::array<Spectrum, 3> rgbWeights_;
-    Imath::V3f luminance_; ///< Y of each channel
+    std::vector<Lobe> darkLobes_;      ///< of layers that are absent: width and roughness, no colour
+    std::vector<float> interfaces_;    ///< reflectance between two layers: [below · layers + above]
+    std::array<Spectrum, 4> weights_;  ///< of the bands in the channels (ChannelWeights)
+    std::array<float, 4> luminance_{}; ///< Y of each channel
     StackFeatures features_;
     std::array<float, 65> internalReflectance_; ///< Saunderson's k2 for n = 1 … 3
     Model model_;

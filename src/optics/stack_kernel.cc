@@ -5,9 +5,6 @@
 
 #include "optics/band_lanes.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace patina {
 
 namespace {
@@ -15,49 +12,51 @@ namespace {
 /// An interface weaker than this cannot be seen; leaving it out saves an exponential.
 constexpr float weakestInterface = 1e-6f;
 
-/// The reflectance so far as a fraction, so that a stack takes one division and not one for each layer.
+/// The reflectance so far, R = back / (back + lost): so a stack takes one division and not one for each layer.
 template <int width>
 struct Fraction {
-    BandLanes<width> over;
-    BandLanes<width> under; ///< over / under is 0…1
+    BandLanes<width> back;
+    BandLanes<width> lost;
 
-    PATINA_INLINE BandLanes<width> value() const { return over / under; }
+    static PATINA_INLINE Fraction of(const BandLanes<width>& reflectance) { return {reflectance, 1.f - reflectance}; }
+    PATINA_INLINE BandLanes<width> whole() const { return back + lost; }
+    PATINA_INLINE BandLanes<width> value() const { return back / whole(); }
 };
 
-/// After so many layers the fraction is divided out: each multiplies `under` by 1 … 2e6.
+/// After so many layers the fraction is divided out: each multiplies it by 1/2 … 1e6.
 constexpr int layersPerDivision = 4;
 
-/// R <- reflectance of the layer over a background R (kubelka_munk.h). With e = exp(-kappa d), u = 1 - e² and w = 1 +
-/// e² R0 + T² R / (1 - R0 R) becomes (u (S (1 - R) - K R) + kappa w R) / (u (S (1 - R) + K) + kappa w): a fraction goes
-/// in, a fraction comes out, and nothing below the line cancels. Over and under are divided by kappa.
+/// R <- R0 + T² R / (1 - R0 R), the layer over a background R (kubelka_munk.h). With h = (1 - exp(-2 kappa d)) / 2 and
+/// K, S per kappa it is a linear map of `back` and `lost`; K <= 1 and h <= 1/2, so no term is negative and nothing
+/// cancels.
 template <int width>
-PATINA_INLINE void foldLayer(const KernelLayer& layer, Fraction<width>& reflectance) {
+PATINA_INLINE Fraction<width> withLayer(const LayerSpectra& layer, const BandLanes<width>& h,
+                                        const Fraction<width>& background) {
     using Bands = BandLanes<width>;
-    const Decay<width> e = decay(Bands::load(*layer.kappa) * layer.thicknessUm);
-    const Bands u = e.gone * (e.left + 1.f);
-    const Bands w = 2.f - u;
-    const Bands turned = Bands::load(*layer.scattering) * (reflectance.under - reflectance.over);
-    const Bands absorption = Bands::load(*layer.absorption);
-    const Bands over = u * (turned - absorption * reflectance.over) + w * reflectance.over;
-    reflectance.under = u * (turned + absorption * reflectance.under) + w * reflectance.under;
-    reflectance.over = over;
+    const Bands backToBack = 1.f - h * Bands::load(layer.onePlus);
+    const Bands backToLost = h * Bands::load(layer.twoAbsorption);
+    const Bands lostToLost = 1.f - h * Bands::load(layer.oneMinus);
+    const Bands lostToBack = h * Bands::load(layer.scattering);
+    return {background.back * backToBack + background.lost * lostToBack,
+            background.lost * lostToLost + background.back * backToLost};
 }
 
 /// The layers over the base, the interfaces between them too where `interfaces` says so.
 template <int width, bool interfaces>
 PATINA_INLINE Fraction<width> foldStack(const KernelInput& input) {
     using Bands = BandLanes<width>;
-    Fraction<width> reflectance{Bands::load(*input.base), Bands::constant(1.f)};
+    Fraction<width> reflectance = Fraction<width>::of(Bands::load(*input.base));
     for (int k = 0; k < input.count; ++k) {
         if (k > 0 && k % layersPerDivision == 0) {
-            reflectance = {reflectance.value(), Bands::constant(1.f)};
+            const Bands perWhole = 1.f / reflectance.whole();
+            reflectance = {reflectance.back * perWhole, reflectance.lost * perWhole};
         }
-        foldLayer(input.layers[k], reflectance);
-        const float f = input.layers[k].interfaceAbove;
-        if (interfaces && f > weakestInterface) { // F + (1 - F)² R / (1 - F R)
-            const Bands over = reflectance.under * f + reflectance.over * (1.f - 2.f * f);
-            reflectance.under = reflectance.under - reflectance.over * f;
-            reflectance.over = over;
+        const KernelLayer& layer = input.layers[k];
+        const Bands h = halfGone(Bands::load(layer.optics->twoKappa) * layer.thicknessUm);
+        reflectance = withLayer(*layer.optics, h, reflectance);
+        if (interfaces) { // F + (1 - F)² R / (1 - F R), which is R for F = 0: there is no branch
+            const float f = layer.interfaceAbove;
+            reflectance.back = reflectance.back + reflectance.lost * (f / (1.f - f));
         }
     }
     return reflectance;
@@ -65,15 +64,22 @@ PATINA_INLINE Fraction<width> foldStack(const KernelInput& input) {
 
 template <int width>
 PATINA_INLINE void foldBodyIn(const KernelInput& input, Spectrum& result) {
-    // A black body may come out at -1e-8.
-    const BandLanes<width> reflectance = foldStack<width, false>(input).value();
-    whereGreater(reflectance, 0.f, reflectance, BandLanes<width>::constant(0.f)).store(result);
+    foldStack<width, false>(input).value().store(result);
+}
+
+/// A spectrum below 1 may leave the gamut: a deep orange's blue is negative. Such a channel is 0.
+template <int width>
+PATINA_INLINE RgbLanes inGamut(const BandLanes<width>& bands, const ChannelWeights& weights) {
+    const RgbLanes rgb = toRgb(bands, weights);
+    return rgb > 0.f ? rgb : RgbLanes{};
 }
 
 template <int width>
 PATINA_INLINE void foldConservingIn(const KernelInput& input, KernelOutput& output) {
     using Bands = BandLanes<width>;
     const Fraction<width> reflectance = foldStack<width, true>(input);
+    // Begun here, so that it is done when the lobes are.
+    const Bands perRest = 1.f / (reflectance.lost + reflectance.back * (1.f - input.k2));
     const Bands metal = Bands::load(*input.base);
     // Unscattered light, from the top down: to an interface and back it loses exp(-2 Σ (K + S) d) and what the
     // interfaces on its way reflect.
@@ -81,33 +87,56 @@ PATINA_INLINE void foldConservingIn(const KernelInput& input, KernelOutput& outp
     Bands glossy = Bands::constant(0.f);
     Bands depth = Bands::constant(0.f);
     float passed = 1.f;
+    RgbLanes lobeSum{};
     for (int k = input.count - 1; k >= 0; --k) {
         const KernelLayer& layer = input.layers[k];
         const float f = layer.interfaceAbove;
-        float* lobe = output.lobes[k + 1];
-        lobe[0] = lobe[1] = lobe[2] = 0.f;
+        RgbLanes lobe{};
         if (f > weakestInterface) {
-            const Bands through = decay(depth * 2.f).left * (f * passed);
+            const Bands through = remaining(depth) * (f * passed);
             glossy = glossy + through;
-            dotBands(through * outside, input.rgbWeights, lobe);
+            lobe = inGamut(through, *input.weights) * outside;
+            lobeSum = lobeSum + lobe;
             passed *= (1.f - f) * (1.f - f);
         }
-        depth = depth + Bands::load(*layer.extinction) * layer.thicknessUm;
+        output.lobes[k + 1] = lobe;
+        depth = depth + Bands::load(layer.optics->twoExtinction) * layer.thicknessUm;
     }
-    const Bands through = decay(depth * 2.f).left * passed;
+    const Bands through = remaining(depth) * passed;
     const Bands mirrored = through * metal;
     glossy = glossy + mirrored;
-    dotBands(mirrored * outside, input.rgbWeights, output.lobes[0]);
+    output.lobes[0] = inGamut(mirrored, *input.weights) * outside;
+    output.lobeSum = lobeSum + output.lobes[0];
     if (input.wantEdge) {
-        dotBands(through * outside, input.rgbWeights, output.edge);
+        output.edge = inGamut(through, *input.weights) * outside;
     }
     // What comes up diffusely meets the air interface from within (Saunderson); of the glossy light k1 is turned back
     // and is diffuse from then on.
-    const Bands difference = reflectance.over - glossy * reflectance.under;
+    const Bands difference = reflectance.back - glossy * reflectance.whole();
     const Bands scattered = whereGreater(difference, 0.f, difference, Bands::constant(0.f));
-    const Bands diffuse = ((scattered + glossy * reflectance.over * input.k1) * ((1.f - input.k1) * (1.f - input.k2))) /
-                          (reflectance.under - reflectance.over * input.k2);
-    dotBands(diffuse, input.rgbWeights, output.diffuse);
+    const Bands diffuse = (scattered + glossy * reflectance.back * input.k1) * perRest;
+    output.diffuse = inGamut(diffuse, *input.weights) * ((1.f - input.k1) * (1.f - input.k2));
+}
+
+template <int width>
+PATINA_INLINE void foldPaperIn(const KernelInput& input, KernelOutput& output) {
+    using Bands = BandLanes<width>;
+    output.diffuse = toRgb(foldStack<width, false>(input).value(), *input.weights);
+    // From the top down: what lies above an interface lets T through and reflects `below` from its underside. One more
+    // layer makes of T, times exp(-kappa d), over the whole of the same fraction.
+    Fraction<width> below = Fraction<width>::of(Bands::constant(0.f));
+    Bands transmittance = Bands::constant(1.f);
+    for (int k = input.count - 1; k >= 0; --k) {
+        const KernelLayer& layer = input.layers[k];
+        output.lobes[k + 1] = toRgb(Bands::load(*layer.specular) * (transmittance * transmittance), *input.weights);
+        const Decay<width> e = decay(Bands::load(layer.optics->twoKappa) * (0.5f * layer.thicknessUm));
+        const Bands h = e.gone * (0.5f + 0.5f * e.left); // (1 - exp(-2 kappa d)) / 2
+        below = withLayer<width>(*layer.optics, h, below);
+        const Bands perWhole = 1.f / below.whole();
+        below = {below.back * perWhole, below.lost * perWhole};
+        transmittance = transmittance * e.left * perWhole;
+    }
+    output.lobes[0] = toRgb(Bands::load(*input.base) * (transmittance * transmittance), *input.weights);
 }
 
 #if defined(__x86_64__)
@@ -117,11 +146,17 @@ __attribute__((target("avx512f"))) void foldBody16(const KernelInput& input, Spe
 __attribute__((target("avx512f"))) void foldConserving16(const KernelInput& input, KernelOutput& output) {
     foldConservingIn<16>(input, output);
 }
+__attribute__((target("avx512f"))) void foldPaper16(const KernelInput& input, KernelOutput& output) {
+    foldPaperIn<16>(input, output);
+}
 __attribute__((target("avx2"))) void foldBody8(const KernelInput& input, Spectrum& result) {
     foldBodyIn<8>(input, result);
 }
 __attribute__((target("avx2"))) void foldConserving8(const KernelInput& input, KernelOutput& output) {
     foldConservingIn<8>(input, output);
+}
+__attribute__((target("avx2"))) void foldPaper8(const KernelInput& input, KernelOutput& output) {
+    foldPaperIn<8>(input, output);
 }
 #endif
 void foldBody4(const KernelInput& input, Spectrum& result) {
@@ -130,29 +165,39 @@ void foldBody4(const KernelInput& input, Spectrum& result) {
 void foldConserving4(const KernelInput& input, KernelOutput& output) {
     foldConservingIn<4>(input, output);
 }
+void foldPaper4(const KernelInput& input, KernelOutput& output) {
+    foldPaperIn<4>(input, output);
+}
 
 } // namespace
 
-LayerOptics LayerOptics::of(double absorption, double scattering) {
-    const double kappa =
-        std::max(std::sqrt(absorption * (absorption + 2.0 * scattering)), 1e-6 * (absorption + scattering));
-    const double perKappa = kappa > 0.0 ? 1.0 / kappa : 0.0;
-    return {static_cast<float>(kappa), static_cast<float>(scattering * perKappa),
-            static_cast<float>(absorption * perKappa), static_cast<float>(absorption + scattering)};
+ChannelWeights channelWeights(const std::array<Spectrum, 3>& rgb) {
+    ChannelWeights weights;
+    for (int band = 0; band < bandCount; ++band) {
+        for (int channel = 0; channel < 3; ++channel) {
+            weights[band % 4][band - band % 4 + channel] = rgb[channel][band];
+        }
+    }
+    return weights;
 }
 
 StackKernel stackKernel(int width) {
 #if defined(__x86_64__)
     if (width >= 16 && __builtin_cpu_supports("avx512f")) {
-        return {foldBody16, foldConserving16};
+        return {foldBody16, foldConserving16, foldPaper16};
     }
     if (width >= 8 && __builtin_cpu_supports("avx2")) {
-        return {foldBody8, foldConserving8};
+        return {foldBody8, foldConserving8, foldPaper8};
     }
 #else
     (void)width;
 #endif
-    return {foldBody4, foldConserving4};
+    return {foldBody4, foldConserving4, foldPaper4};
+}
+
+const StackKernel& bestStackKernel() {
+    static const StackKernel chosen = stackKernel(16);
+    return chosen;
 }
 
 } // namespace patina

@@ -1,25 +1,16 @@
 #pragma once
 // The inner loop of StackOptics: one stack, all bands at once.
 
+#include "optics/layer_optics.h"
 #include "optics/layer_stack.h"
+#include "optics/rgb_lanes.h"
 
 namespace patina {
 
-/// K and S of one band as the kernel wants them.
-struct LayerOptics {
-    float kappa, scattering, absorption, extinction;
-
-    /// kappa is kept above 1e-6 (K + S): so S / kappa is finite, and what it changes, a white layer that would return
-    /// more than 0.999999, cannot be seen.
-    static LayerOptics of(double absorption, double scattering);
-};
-
 /// What the kernel needs to know of one present layer.
 struct KernelLayer {
-    const Spectrum* kappa;      ///< sqrt(K (K + 2 S)), above 0 (LayerOptics)
-    const Spectrum* scattering; ///< S / kappa
-    const Spectrum* absorption; ///< K / kappa
-    const Spectrum* extinction; ///< K + S, 1/µm
+    const LayerSpectra* optics;
+    const Spectrum* specular; ///< of the lobe at its upper face; only `paper` reads it
     float thicknessUm;
     float interfaceAbove; ///< reflectance of the interface with the layer above; 0 for the topmost
 };
@@ -29,28 +20,37 @@ struct KernelInput {
     int count;
     KernelLayer layers[StackOptics::maxLayers];
     const Spectrum* base;
-    const Spectrum* rgbWeights; ///< three of them
-    float k1;                   ///< of the interface with the air, from outside
-    float k2;                   ///< from inside
+    const ChannelWeights* weights;
+    float k1; ///< of the interface with the air, from outside
+    float k2; ///< from inside
     bool wantEdge;
 };
 
-/// Linear Rec.709, not clipped.
+/// Linear light of the weights' colour space; the fourth of each is 0. The default model's is 0 or more: spectra below
+/// 1 that leave the gamut are clipped.
 struct KernelOutput {
-    float diffuse[3];
-    float lobes[StackOptics::maxLayers + 1][3]; ///< below the air: [0] the metal, [k] above present layer k - 1
-    float edge[3];                              ///< what the metal would reflect were it perfect
+    RgbLanes diffuse;
+    RgbLanes lobes[StackOptics::maxLayers + 1]; ///< below the air: [0] the metal, [k] above present layer k - 1
+    RgbLanes lobeSum;                           ///< the default model's lobes, all together
+    RgbLanes edge;                              ///< what the metal would reflect were it perfect
 };
 
-/// The two loops, built for one width of register.
+/// The loops, built for one width of register.
 struct StackKernel {
     /// Kubelka–Munk of the layers over the base; interfaces are left out.
     void (*foldBody)(const KernelInput& input, Spectrum& result);
     /// The default model (docs/optics.md, "Glossy and diffuse").
     void (*foldConserving)(const KernelInput& input, KernelOutput& output);
+    /// The paper's model: Kubelka–Munk as the diffuse part, lobes by the transmittance of what lies above.
+    void (*foldPaper)(const KernelInput& input, KernelOutput& output);
 };
 
+/// Weights of the bands in red, green and blue, arranged as the kernel wants them.
+ChannelWeights channelWeights(const std::array<Spectrum, 3>& rgb);
+
 /// The widest build up to `width` numbers in a register that this machine can run. All give the same bits.
-StackKernel stackKernel(int width = 16);
+StackKernel stackKernel(int width);
+/// The widest of all.
+const StackKernel& bestStackKernel();
 
 } // namespace patina
