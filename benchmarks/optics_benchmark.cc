@@ -132,8 +132,8 @@ PATINA_INLINE void foldTabled(const TabledStack& stack, const float* um, Spectru
 // ---------------------------------------------------------------------
 
 struct ThreeChannels {
-    float twoKappa[3][layerCount], scattering[3][layerCount], twoAbsorption[3][layerCount], onePlus[3][layerCount],
-        oneMinus[3][layerCount], base[3];
+    float twoKappa[3][layerCount], scattering[3][layerCount], twoAbsorption[3][layerCount], minusOnePlus[3][layerCount],
+        minusOneMinus[3][layerCount], base[3];
 };
 
 /// The shipping fold for sixteen points in one channel: `um` has sixteen thicknesses of each layer in a row.
@@ -145,8 +145,8 @@ PATINA_INLINE void foldPoints(const ThreeChannels& stack, const std::array<Spect
         Points back = Points::constant(stack.base[c]), lost = Points::constant(1.f - stack.base[c]);
         for (int k = 0; k < layerCount; ++k) {
             const Points h = halfGone(Points::load(um[k]) * stack.twoKappa[c][k]);
-            const Points next = back * (1.f - h * stack.onePlus[c][k]) + lost * (h * stack.scattering[c][k]);
-            lost = lost * (1.f - h * stack.oneMinus[c][k]) + back * (h * stack.twoAbsorption[c][k]);
+            const Points next = back * fused(h, stack.minusOnePlus[c][k], 1.f) + lost * (h * stack.scattering[c][k]);
+            lost = lost * fused(h, stack.minusOneMinus[c][k], 1.f) + back * (h * stack.twoAbsorption[c][k]);
             back = next;
         }
         (back / (back + lost)).store(result[c]);
@@ -238,8 +238,8 @@ void ThreeChannelVector(benchmark::State& state) {
             stack.twoKappa[c][k] = optics.twoKappa;
             stack.scattering[c][k] = optics.scattering;
             stack.twoAbsorption[c][k] = optics.twoAbsorption;
-            stack.onePlus[c][k] = optics.onePlus;
-            stack.oneMinus[c][k] = optics.oneMinus;
+            stack.minusOnePlus[c][k] = optics.minusOnePlus;
+            stack.minusOneMinus[c][k] = optics.minusOneMinus;
         }
     }
     std::vector<std::array<Spectrum, layerCount>> um(pointCount / bandCount);

@@ -13,8 +13,8 @@ LayerOptics LayerOptics::of(double absorption, double scattering) {
     return {static_cast<float>(2.0 * kappa),
             static_cast<float>(scattering * perKappa),
             static_cast<float>(2.0 * perKappaAbsorption),
-            static_cast<float>(1.0 + perKappaAbsorption),
-            static_cast<float>(1.0 - perKappaAbsorption),
+            static_cast<float>(-1.0 - perKappaAbsorption),
+            static_cast<float>(perKappaAbsorption - 1.0),
             static_cast<float>(2.0 * (absorption + scattering))};
 }
 
@@ -23,8 +23,8 @@ void LayerSpectra::setBand(int band, double absorptionPerUm, double scatteringPe
     twoKappa[band] = optics.twoKappa;
     scattering[band] = optics.scattering;
     twoAbsorption[band] = optics.twoAbsorption;
-    onePlus[band] = optics.onePlus;
-    oneMinus[band] = optics.oneMinus;
+    minusOnePlus[band] = optics.minusOnePlus;
+    minusOneMinus[band] = optics.minusOneMinus;
     twoExtinction[band] = optics.twoExtinction;
 }
 

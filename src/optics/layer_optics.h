@@ -11,8 +11,8 @@ struct LayerOptics {
     float twoKappa;      ///< 1/µm
     float scattering;    ///< S / kappa
     float twoAbsorption; ///< 2 K / kappa
-    float onePlus;       ///< 1 + K / kappa
-    float oneMinus;      ///< 1 - K / kappa; never negative
+    float minusOnePlus;  ///< -(1 + K / kappa)
+    float minusOneMinus; ///< -(1 - K / kappa); never positive
     float twoExtinction; ///< 2 (K + S), 1/µm
 
     static LayerOptics of(double absorption, double scattering);
@@ -20,7 +20,7 @@ struct LayerOptics {
 
 /// LayerOptics of all bands.
 struct LayerSpectra {
-    Spectrum twoKappa, scattering, twoAbsorption, onePlus, oneMinus, twoExtinction;
+    Spectrum twoKappa, scattering, twoAbsorption, minusOnePlus, minusOneMinus, twoExtinction;
 
     void setBand(int band, double absorption, double scattering);
 };

@@ -33,12 +33,12 @@ template <int width>
 PATINA_INLINE Fraction<width> withLayer(const LayerSpectra& layer, const BandLanes<width>& h,
                                         const Fraction<width>& background) {
     using Bands = BandLanes<width>;
-    const Bands backToBack = 1.f - h * Bands::load(layer.onePlus);
+    const Bands backToBack = fused(h, Bands::load(layer.minusOnePlus), Bands::constant(1.f));
     const Bands backToLost = h * Bands::load(layer.twoAbsorption);
-    const Bands lostToLost = 1.f - h * Bands::load(layer.oneMinus);
+    const Bands lostToLost = fused(h, Bands::load(layer.minusOneMinus), Bands::constant(1.f));
     const Bands lostToBack = h * Bands::load(layer.scattering);
-    return {background.back * backToBack + background.lost * lostToBack,
-            background.lost * lostToLost + background.back * backToLost};
+    return {fused(background.back, backToBack, background.lost * lostToBack),
+            fused(background.lost, lostToLost, background.back * backToLost)};
 }
 
 /// The layers over the base, the interfaces between them too where `interfaces` says so.
@@ -56,7 +56,7 @@ PATINA_INLINE Fraction<width> foldStack(const KernelInput& input) {
         reflectance = withLayer(*layer.optics, h, reflectance);
         if (interfaces) { // F + (1 - F)² R / (1 - F R), which is R for F = 0: there is no branch
             const float f = layer.interfaceAbove;
-            reflectance.back = reflectance.back + reflectance.lost * (f / (1.f - f));
+            reflectance.back = fused(reflectance.lost, f / (1.f - f), reflectance.back);
         }
     }
     return reflectance;
@@ -100,7 +100,7 @@ PATINA_INLINE void foldConservingIn(const KernelInput& input, KernelOutput& outp
             passed *= (1.f - f) * (1.f - f);
         }
         output.lobes[k + 1] = lobe;
-        depth = depth + Bands::load(layer.optics->twoExtinction) * layer.thicknessUm;
+        depth = fused(Bands::load(layer.optics->twoExtinction), layer.thicknessUm, depth);
     }
     const Bands through = remaining(depth) * passed;
     const Bands mirrored = through * metal;
@@ -186,7 +186,7 @@ StackKernel stackKernel(int width) {
     if (width >= 16 && __builtin_cpu_supports("avx512f")) {
         return {foldBody16, foldConserving16, foldPaper16};
     }
-    if (width >= 8 && __builtin_cpu_supports("avx2")) {
+    if (width >= 8 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
         return {foldBody8, foldConserving8, foldPaper8};
     }
 #else

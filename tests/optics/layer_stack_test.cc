@@ -1,11 +1,15 @@
+// Vectors of the baseline's width only: what the note says of wider ones does not matter here.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 #include "base/errors.h"
+#include "optics/band_lanes.h"
 #include "optics/layer_stack.h"
 #include "optics/stack_kernel.h"
 #include "optics_test_support.h"
 
 #include <gtest/gtest.h>
 
-#include <array>
+#include <cmath>
 #include <limits>
 
 namespace patina {
@@ -315,6 +319,29 @@ TEST(LayerStack, refusesAStackWithoutABase) {
     EXPECT_THROW(StackOptics(std::vector<const Material*>{}), RunError);
     const std::vector<const Material*> many(StackOptics::maxLayers + 2, &shippedMaterials().at("copper"));
     EXPECT_THROW(StackOptics{many}, RunError);
+}
+
+// A machine without the instruction makes it from sums and products in double precision.
+TEST(StackKernel, aProductAndASumAreRoundedOnceOnEveryMachine) {
+    Uniforms uniforms("fused");
+    const auto number = [&] {
+        const float size = std::ldexp(1.f + static_cast<float>(uniforms()), uniforms.below(40) - 20);
+        return uniforms() < 0.5 ? size : -size;
+    };
+    for (int i = 0; i < 200000; ++i) {
+        Register<4>::Floats a, b, c;
+        for (int k = 0; k < 4; ++k) {
+            a[k] = number();
+            b[k] = number();
+            // Any, or one that leaves only what rounding the product would lose, or one half a last place away from it.
+            const int kind = uniforms.below(3);
+            c[k] = kind == 0 ? number() : kind == 1 ? -a[k] * b[k] : std::ldexp(a[k] * b[k], -24);
+        }
+        const Register<4>::Floats sum = fusedRegister(a, b, c);
+        for (int k = 0; k < 4; ++k) {
+            ASSERT_EQ(sum[k], std::fma(a[k], b[k], c[k])) << a[k] << " " << b[k] << " " << c[k];
+        }
+    }
 }
 
 // Machines differ in the width of their registers; results must not.
