@@ -87,13 +87,13 @@ struct FitArguments {
     std::string column = "reflectance";
     std::string backing = "0", secondBacking;
     double thicknessUm = 0.0, scattering = 0.0, index = 1.5;
-    bool inAir = true;
+    bool body = false; ///< the samples are without the interface with air
 };
 
 /// A file of reflectances, freed of the first surface where it was measured in air.
 TabulatedSpectrum reflectances(const std::string& file, const FitArguments& arguments) {
     TabulatedSpectrum spectrum = readSpectrumFile(file, arguments.column, {0.0, 1.0, "reflectance"});
-    return arguments.inAir ? bodyReflectance(spectrum, arguments.index) : spectrum;
+    return arguments.body ? spectrum : bodyReflectance(spectrum, arguments.index);
 }
 
 /// A number (of the body), or a file measured as the sample was.
@@ -137,8 +137,8 @@ void fit(const FitArguments& arguments, const Options& options, Console& console
             ExitCode::commandLine, "materials fit", "these samples do not make a fit",
             "give --opaque with --scattering; --opaque and --layer; or --layer and --second with their backings");
     }
-    source += arguments.inAir ? fmt::format("; measured in air, interface of index {:g} removed", arguments.index)
-                              : std::string("; reflectances of the body");
+    source += arguments.body ? std::string("; reflectances of the body")
+                             : fmt::format("; measured in air, interface of index {:g} removed", arguments.index);
     const auto file = outputFolder(options, arguments.name) / (arguments.name + ".toml");
     writeTextFile(file, materialFileOf(arguments.name, fitted, arguments.index, source + "."));
     std::string text = "  wavelength/nm   K/(1/µm)   S/(1/µm)\n";
@@ -175,8 +175,7 @@ void addFitCommand(CLI::App& materials, Options& options, Action& action) {
         ->check(CLI::Range(1.0, 4.0))
         ->type_name("N")
         ->group(group);
-    command->add_flag("!--body", a->inAir, "The reflectances are the body's, the interface is not in them")
-        ->group(group);
+    command->add_flag("--body", a->body, "The reflectances are the body's, the interface is not in them")->group(group);
     addGeneralOptions(*command, options);
     addOutputOption(*command, options);
     command->callback(
