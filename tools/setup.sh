@@ -22,7 +22,8 @@ clients=no
 for option in "$@"; do
   case "$option" in
     --clients) packages+=(blender glslang-tools python3-venv python3-openvdb python3-numpy libopenvdb-tools); clients=yes ;;
-    *) echo "setup.sh: unknown option '$option' (--clients)" >&2; exit 2 ;;
+    --thread-sanitizer) packages+=(dpkg-dev) ;;
+    *) echo "setup.sh: unknown option '$option' (--clients, --thread-sanitizer)" >&2; exit 2 ;;
   esac
 done
 
