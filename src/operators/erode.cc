@@ -38,23 +38,24 @@ double newSurface(const std::vector<float*>& nest, openvdb::Index voxel, double 
     return surface + budget / metalHardness;
 }
 
-// The same for a whole leaf, layer by layer in plain loops.
-void walkDown(const std::vector<float*>& nest, const FloatLeaf& active, const LayerHardness& hardness,
-              double metalHardness, float* budget, float* surface) {
-    const float* top = nest.back();
-    forActive(active, [&](openvdb::Index pos) { surface[pos] = top[pos]; });
+// The same for a whole leaf, layer by layer in plain loops over all its voxels: where the budget is 0, as it is in voxels
+// that are not active, no bit changes.
+void walkDown(const std::vector<float*>& nest, const LayerHardness& hardness, double metalHardness,
+              float* __restrict budget, float* __restrict surface) {
     for (std::size_t k = nest.size() - 1; k >= 1; --k) {
         const float* below = nest[k - 1];
         const auto costs = static_cast<float>(hardness[k - 1]), gives = 1.f / costs;
-        forActive(active, [&](openvdb::Index pos) {
-            const float from = surface[pos], left = budget[pos], cost = (below[pos] - from) * costs;
+        for (openvdb::Index pos = 0; pos < FloatLeaf::SIZE; ++pos) {
+            const float from = surface[pos], to = below[pos], left = budget[pos], cost = (to - from) * costs;
+            const float part = from + left * gives, rest = left - cost;
             const bool through = cost < left;
-            surface[pos] = through ? below[pos] : from + left * gives;
-            budget[pos] = through ? left - cost : 0.f;
-        });
+            surface[pos] = through ? to : part;
+            budget[pos] = through ? rest : 0.f;
+        }
     }
     const auto gives = static_cast<float>(1.0 / metalHardness);
-    forActive(active, [&](openvdb::Index pos) { surface[pos] += budget[pos] * gives; });
+    for (openvdb::Index pos = 0; pos < FloatLeaf::SIZE; ++pos)
+        surface[pos] += budget[pos] * gives;
 }
 
 // A budget goes furthest in the softest of the layers, and least far in the hardest.
@@ -78,27 +79,27 @@ class EvenShift {
           lattice_(leaves_), inverseVoxelSize_(static_cast<float>(1.0 / work.volume.scale().voxelSize)),
           thickness_(static_cast<float>(thickness)), sampler_(work.volume.grids()) {}
 
-    // Fills budget[position] for the active voxels of leaf n. Within reach of the present and the new surface, and one
-    // cell more, every voxel has its own slope; farther away, where no crossing can come by a shift of this kind, a
-    // group of 2³ shares that of its first voxel (slopes vary by half a percent along a surface).
+    // Fills budget[position] for all voxels of leaf n, 0 where they are not active. Within reach of the present and the
+    // new surface, and one cell more, every voxel has its own slope; farther away, where no crossing can come by a shift
+    // of this kind, a group of 2³ shares that of its first voxel (slopes vary by half a percent along a surface).
     void read(std::size_t n, float* budget) const {
         const SlopeReader slopes(lattice_, leaves_, n, inverseVoxelSize_);
         const SurfaceMesh& surface = binding_.surface();
         const FloatLeaf& leaf = *leaves_[n];
-        const float* phi = leaf.buffer().data();
+        const VoxelMask active = activeVoxelsOf(leaf), shares = sharers(leaf.buffer().data(), active);
         // First all feet, then all slopes: the triangles come from all over the memory, and wait for one another less.
         std::array<Imath::V3f, FloatLeaf::SIZE> foot;
+        std::array<float, FloatLeaf::SIZE> slope;
         std::array<std::uint16_t, FloatLeaf::SIZE> own;
-        const bool back = binding_.hasBack(); // which takes nothing
         std::size_t owners = 0, at = binding_.leafStart(n);
+        std::fill(budget, budget + FloatLeaf::SIZE, 0.f);
         forActive(leaf, [&](openvdb::Index pos) {
-            const SurfacePoint& under = binding_.at(at++);
-            const openvdb::Index first = pos & ~openvdb::Index(firstOfGroup);
-            const bool shares = !back && first != pos && isFar(phi[pos]) && leaf.isValueOn(first) &&
-                                isFar(phi[first]) && (phi[pos] > 0.f) == (phi[first] > 0.f);
-            budget[pos] = shares ? shared : 0.f;
-            if (shares || under.triangle < 0)
+            const std::size_t here = at++;
+            if (shares[pos >> 6] >> (pos & 63) & 1)
                 return;
+            const SurfacePoint& under = binding_.at(here);
+            if (under.triangle < 0)
+                return; // the back of a sheet takes nothing
             const Imath::V3i& corners = surface.triangles[under.triangle];
             const Imath::V3f& a = surface.positions[corners[0]];
             foot[owners] =
@@ -106,23 +107,41 @@ class EvenShift {
                 inverseVoxelSize_;
             own[owners++] = static_cast<std::uint16_t>(pos);
         });
-        for (std::size_t i = 0; i < owners; ++i) {
-            float slope = slopes.at(foot[i]);
-            if (slope < 0.f)
-                slope = far(foot[i]);
-            budget[own[i]] = slope * thickness_;
-        }
-        forActive(leaf, [&](openvdb::Index pos) {
-            if (budget[pos] == shared)
+        slopes.read(foot.data(), owners, slope.data());
+        for (std::size_t i = 0; i < owners; ++i)
+            budget[own[i]] = (slope[i] < 0.f ? far(foot[i]) : slope[i]) * thickness_;
+        for (openvdb::Index w = 0; w < 8; ++w)
+            for (std::uint64_t word = shares[w]; word; word &= word - 1) {
+                const openvdb::Index pos = w * 64 + openvdb::util::FindLowestOn(word);
                 budget[pos] = budget[pos & ~openvdb::Index(firstOfGroup)];
-        });
+            }
     }
 
   private:
     static constexpr openvdb::Index firstOfGroup = 64 + 8 + 1;
-    static constexpr float shared = -1.f;
 
-    bool isFar(float phi) const { return std::abs(phi) * inverseVoxelSize_ > 2.f + thickness_ * inverseVoxelSize_; }
+    // The voxels that take the slope of their group's first one: both are active, far, and on one side.
+    VoxelMask sharers(const float* phi, const VoxelMask& active) const {
+        VoxelMask shares{};
+        if (binding_.hasBack())
+            return shares;
+        const float inverse = inverseVoxelSize_, away = 2.f + thickness_ * inverseVoxelSize_;
+        const VoxelMask far = voxelsWhere([=](unsigned i) { return std::abs(phi[i]) * inverse > away; });
+        const VoxelMask outside = voxelsWhere([=](unsigned i) { return phi[i] > 0.f; });
+        constexpr std::uint64_t firsts = 0x0055005500550055ull;
+        const auto spread = [](std::uint64_t word) {
+            word &= firsts;
+            word |= word << 1;
+            return word | word << 8;
+        };
+        for (unsigned w = 0; w < 8; ++w) {
+            const unsigned first = w & ~1u;
+            shares[w] = active[w] & far[w] & spread(active[first] & far[first]) & ~(spread(outside[first]) ^ outside[w]);
+            if (w == first)
+                shares[w] &= ~firsts;
+        }
+        return shares;
+    }
 
     // A foot more than a leaf away, in a wide band.
     float far(const Imath::V3f& p) const {
@@ -200,16 +219,17 @@ OperationReport erode(Workpiece& work, double thicknessUm, const ThicknessMap* m
     const auto erodedSurface = [&](std::size_t n, const std::vector<float*>& nest, float* surface) {
         const float* const floor = nest[0];
         const float* const top = nest[layers];
-        const FloatLeaf& active = *leaves[0][n];
+        std::copy(top, top + FloatLeaf::SIZE, surface); // also where voxels are not active
         if (budgets) {
             float* budget = &budgets[n * FloatLeaf::SIZE];
             if (walk)
-                walkDown(nest, active, costs, metalHardness.value_or(1.0), budget, surface);
+                walkDown(nest, costs, metalHardness.value_or(1.0), budget, surface);
             else
-                forActive(active, [&](openvdb::Index pos) { surface[pos] = top[pos] + budget[pos]; });
+                for (openvdb::Index pos = 0; pos < FloatLeaf::SIZE; ++pos)
+                    surface[pos] += budget[pos];
         } else {
             std::size_t at = work.binding.leafStart(n);
-            forActive(active, [&](openvdb::Index pos) {
+            forActive(*leaves[0][n], [&](openvdb::Index pos) {
                 const std::size_t here = at++;
                 const double t = field.thickness[here], budget = field.slope[here] * t;
                 double c = top[pos];
@@ -232,7 +252,8 @@ OperationReport erode(Workpiece& work, double thicknessUm, const ThicknessMap* m
             });
         }
         if (!metalHardness)
-            forActive(active, [&](openvdb::Index pos) { surface[pos] = std::min(surface[pos], floor[pos]); });
+            for (openvdb::Index pos = 0; pos < FloatLeaf::SIZE; ++pos)
+                surface[pos] = std::min(surface[pos], floor[pos]);
     };
     // A front that has come through metal has opened no pore: what is still closed behind it stays as it is.
     std::optional<OpenAir> stillClosed;
@@ -259,7 +280,8 @@ OperationReport erode(Workpiece& work, double thicknessUm, const ThicknessMap* m
                     surface[pos] = top[pos];
             });
         int eroded = 0;
-        forActive(active, [&](openvdb::Index pos) { eroded |= surface[pos] > top[pos]; });
+        for (openvdb::Index pos = 0; pos < FloatLeaf::SIZE; ++pos)
+            eroded |= surface[pos] > top[pos];
         if (!eroded)
             return;
         changed[n] = 1;
@@ -267,10 +289,10 @@ OperationReport erode(Workpiece& work, double thicknessUm, const ThicknessMap* m
         for (std::size_t k = layers + 1; k-- > lowest;) {
             float* phi = nest[k];
             int cuts = 0;
-            forActive(active, [&](openvdb::Index pos) {
+            for (openvdb::Index pos = 0; pos < FloatLeaf::SIZE; ++pos) {
                 cuts |= surface[pos] > phi[pos];
                 phi[pos] = std::max(phi[pos], surface[pos]);
-            });
+            }
             if (!cuts)
                 break; // what lies below is deeper still
         }

@@ -6,8 +6,10 @@
 
 #include <Imath/ImathVec.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace patina {
 
@@ -24,44 +26,79 @@ class SlopeReader {
             for (int j = 0; j < 3; ++j)
                 for (int k = 0; k < 3; ++k, ++at) {
                     const std::int32_t number = lattice.at(block.x() + i - 1, block.y() + j - 1, block.z() + k - 1);
-                    around_[at] = number < 0 ? nullptr : leaves[number]->buffer().data();
+                    around_[at] = number < 0 ? nothing() : leaves[number]->buffer().data();
                 }
     }
 
-    /// The slope at a point (voxels), trilinear as NestSampler has it; below 0 where the point is not among the leaves.
-    float at(const Imath::V3f& p) const {
-        const float fx = std::floor(p.x), fy = std::floor(p.y), fz = std::floor(p.z);
-        const int i = int(fx) - origin_.x() + 8, j = int(fy) - origin_.y() + 8, k = int(fz) - origin_.z() + 8;
-        if (unsigned(i) >= 23u || unsigned(j) >= 23u || unsigned(k) >= 23u)
-            return -1.f;
-        const float x = p.x - fx, y = p.y - fy, z = p.z - fz;
-        float c[8];
-        if ((i & 7) != 7 && (j & 7) != 7 && (k & 7) != 7) {
-            const float* leaf = around_[(i >> 3) * 9 + (j >> 3) * 3 + (k >> 3)];
-            if (!leaf)
-                return -1.f;
-            leaf += (i & 7) << 6 | (j & 7) << 3 | (k & 7);
-            c[0] = leaf[0], c[1] = leaf[1], c[2] = leaf[8], c[3] = leaf[9];
-            c[4] = leaf[64], c[5] = leaf[65], c[6] = leaf[72], c[7] = leaf[73];
-        } else {
-            for (int n = 0; n < 8; ++n) {
-                const int ci = i + (n >> 2), cj = j + ((n >> 1) & 1), ck = k + (n & 1);
-                const float* leaf = around_[(ci >> 3) * 9 + (cj >> 3) * 3 + (ck >> 3)];
-                if (!leaf)
-                    return -1.f;
-                c[n] = leaf[(ci & 7) << 6 | (cj & 7) << 3 | (ck & 7)];
-            }
+    /// The slopes at some points (voxels), trilinear as NestSampler has it; below 0 where a point is not among the
+    /// leaves. Values are gathered for a batch of points, then all its slopes are worked out in one plain loop.
+    void read(const Imath::V3f* points, std::size_t count, float* slopes) const {
+        for (std::size_t done = 0; done < count; done += batch) {
+            const auto n = static_cast<unsigned>(std::min(count - done, batch));
+            readBatch(points + done, n, slopes + done);
         }
-        const float z00 = c[1] - c[0], z01 = c[3] - c[2], z10 = c[5] - c[4], z11 = c[7] - c[6];
-        const float c00 = c[0] + z * z00, c01 = c[2] + z * z01, c10 = c[4] + z * z10, c11 = c[6] + z * z11;
-        const float gx = (c10 + y * (c11 - c10)) - (c00 + y * (c01 - c00));
-        const float gy = (c01 - c00) + x * ((c11 - c10) - (c01 - c00));
-        const float dz0 = z00 + y * (z01 - z00), dz1 = z10 + y * (z11 - z10);
-        const float gz = dz0 + x * (dz1 - dz0);
-        return std::sqrt(gx * gx + gy * gy + gz * gz) * inverseVoxelSize_;
     }
 
   private:
+    static constexpr std::size_t batch = 64;
+
+    void readBatch(const Imath::V3f* points, unsigned count, float* slopes) const {
+        float x[batch], y[batch], z[batch], c[8][batch];
+        for (unsigned n = 0; n < count; ++n) {
+            const Imath::V3f& p = points[n];
+            const int px = floorOf(p.x), py = floorOf(p.y), pz = floorOf(p.z);
+            x[n] = p.x - float(px), y[n] = p.y - float(py), z[n] = p.z - float(pz);
+            gather(px - origin_.x() + 8, py - origin_.y() + 8, pz - origin_.z() + 8, n, c);
+        }
+        const float inverseVoxelSize = inverseVoxelSize_;
+        for (unsigned n = 0; n < count; ++n) {
+            const float z00 = c[1][n] - c[0][n], z01 = c[3][n] - c[2][n];
+            const float z10 = c[5][n] - c[4][n], z11 = c[7][n] - c[6][n];
+            const float c00 = c[0][n] + z[n] * z00, c01 = c[2][n] + z[n] * z01;
+            const float c10 = c[4][n] + z[n] * z10, c11 = c[6][n] + z[n] * z11;
+            const float gx = (c10 + y[n] * (c11 - c10)) - (c00 + y[n] * (c01 - c00));
+            const float gy = (c01 - c00) + x[n] * ((c11 - c10) - (c01 - c00));
+            const float dz0 = z00 + y[n] * (z01 - z00), dz1 = z10 + y[n] * (z11 - z10);
+            const float gz = dz0 + x[n] * (dz1 - dz0);
+            const float slope = std::sqrt(gx * gx + gy * gy + gz * gz) * inverseVoxelSize;
+            slopes[n] = slope >= 0.f ? slope : -1.f;
+        }
+    }
+
+    // Without a call: the baseline instruction set has no rounding.
+    static int floorOf(float v) {
+        const int i = static_cast<int>(v);
+        return i - (v < static_cast<float>(i));
+    }
+
+    // The values at a cell's corners; i, j, k from one leaf below this one. Without a branch on whether the cell lies in
+    // one leaf, which a third of them do not.
+    void gather(int i, int j, int k, unsigned n, float (&c)[8][batch]) const {
+        if (unsigned(i) >= 23u || unsigned(j) >= 23u || unsigned(k) >= 23u) {
+            for (auto& corner : c)
+                corner[n] = std::numeric_limits<float>::quiet_NaN();
+            return;
+        }
+        const int leafX[2] = {(i >> 3) * 9, ((i + 1) >> 3) * 9}, leafY[2] = {(j >> 3) * 3, ((j + 1) >> 3) * 3};
+        const int leafZ[2] = {k >> 3, (k + 1) >> 3};
+        const int x[2] = {(i & 7) << 6, ((i + 1) & 7) << 6}, y[2] = {(j & 7) << 3, ((j + 1) & 7) << 3};
+        const int z[2] = {k & 7, (k + 1) & 7};
+        for (int at = 0; at < 8; ++at) {
+            const int u = at >> 2, v = (at >> 1) & 1, w = at & 1;
+            c[at][n] = around_[leafX[u] + leafY[v] + leafZ[w]][x[u] + y[v] + z[w]];
+        }
+    }
+
+    // What is read where there is no leaf: not a number, and neither is the slope there.
+    static const float* nothing() {
+        static const auto values = [] {
+            std::array<float, 512> all;
+            all.fill(std::numeric_limits<float>::quiet_NaN());
+            return all;
+        }();
+        return values.data();
+    }
+
     openvdb::Coord origin_;
     float inverseVoxelSize_;
     std::array<const float*, 27> around_;

@@ -3,6 +3,9 @@
 
 #include "volume/nest_grids.h"
 
+#include <array>
+#include <cstdint>
+#include <cstring>
 #include <vector>
 
 namespace patina {
@@ -46,6 +49,37 @@ class LeafLattice {
     openvdb::Coord size_;
     std::vector<std::int32_t> number_;
 };
+
+/// One bit for each voxel of a leaf; word x has bit 8 y + z.
+using VoxelMask = std::array<std::uint64_t, 8>;
+
+/// The voxels (0 … 511) for which `test(position)` holds. Tests of plain arrays become vector instructions.
+template <typename Test>
+inline VoxelMask voxelsWhere(Test test) {
+    VoxelMask mask;
+    for (unsigned w = 0; w < 8; ++w) {
+        unsigned char holds[64];
+        for (unsigned i = 0; i < 64; ++i)
+            holds[i] = test(64 * w + i);
+        std::uint64_t word = 0;
+        for (unsigned row = 0; row < 8; ++row) {
+            std::uint64_t bytes;
+            std::memcpy(&bytes, holds + 8 * row, 8);
+            // Eight bytes of 0 or 1 become eight bits.
+            word |= (bytes * 0x0102040810204080ull >> 56) << (8 * row);
+        }
+        mask[w] = word;
+    }
+    return mask;
+}
+
+template <typename Leaf>
+inline VoxelMask activeVoxelsOf(const Leaf& leaf) {
+    VoxelMask mask;
+    for (openvdb::Index w = 0; w < 8; ++w)
+        mask[w] = leaf.getValueMask().template getWord<openvdb::Index64>(w);
+    return mask;
+}
 
 /// Calls `visit(position)` for every active voxel of a leaf in order. Rows without gaps run as plain loops of 64, which
 /// the compiler can turn into vector instructions.

@@ -7,7 +7,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <utility>
 
@@ -51,6 +53,21 @@ class LeafGradient {
     const float* around_[3][2];
 };
 
+// The line of the normal in a voxel: how steep the surface is, and half the line's length times that (both in scene units
+// of phi), so that interfaces are compared by their values alone.
+struct NormalLine {
+    double slope, half;
+};
+
+NormalLine normalLine(const Imath::V3d& difference, double voxelSize, double inverseVoxelSize) {
+    const Imath::V3d gradient = difference * inverseVoxelSize;
+    const double squared = std::max(gradient.length2(), 1e-12), slope = std::sqrt(squared);
+    // Half the length of the line is at most half the voxel's diagonal.
+    const double steepest =
+        std::max({std::abs(gradient.x), std::abs(gradient.y), std::abs(gradient.z), 0.5 * slope});
+    return {slope, 0.5 * voxelSize * squared / steepest};
+}
+
 } // namespace
 
 std::size_t updateMaterialIds(LayerVolume& volume, double presenceUm, const std::vector<char>* changedLeaves) {
@@ -66,7 +83,6 @@ std::size_t updateMaterialIds(LayerVolume& volume, double presenceUm, const std:
     for (const openvdb::FloatGrid* grid : grids.nest())
         nest.push_back(leavesOf(grid->tree()));
     const auto& top = nest.back();
-    const int layers = static_cast<int>(nest.size()) - 1;
     const auto idLeaves = leavesOf(grids.material->tree());
     const LeafLattice lattice(top);
 
@@ -87,48 +103,74 @@ std::size_t updateMaterialIds(LayerVolume& volume, double presenceUm, const std:
     };
 
     const float air = static_cast<float>(0.9 * voxelSize), deep = -air;
+    std::vector<std::size_t> changed(top.size(), 0);
     // The value that growth in voxels gives to an empty voxel beside particles: a pore stays air, even where the
     // interface cuts its corners.
     const float pore = static_cast<float>(0.5 * voxelSize);
-    std::vector<std::size_t> changed(top.size(), 0);
+    const int layers = static_cast<int>(nest.size()) - 1;
+    const double inverseVoxelSize = 1.0 / voxelSize;
     tbb::parallel_for(std::size_t(0), top.size(), [&](std::size_t n) {
         if (!mayChange(n))
             return;
-        const LeafGradient gradients(lattice, top, n);
-        const float* surface = top[n]->buffer().data();
-        const float* floor = nest[0][n]->buffer().data();
+        std::vector<const float*> values;
+        for (const auto& leaves : nest)
+            values.push_back(leaves[n]->buffer().data());
+        const float* surface = values.back();
+        const float* floor = values.front();
         std::int32_t* leafIds = idLeaves[n]->buffer().data();
-        forActive(*top[n], [&](openvdb::Index pos) {
-            std::int32_t id = 0;
-            // Half the length of the normal's line within the voxel is at most half the diagonal.
-            if (surface[pos] > air) {
-                id = 0;
-            } else if (floor[pos] < deep) {
-                id = 1;
-            } else {
-                Imath::V3d gradient = gradients.at(static_cast<int>(pos)) / voxelSize;
-                const double g = std::max(gradient.length(), 1e-6);
-                gradient /= g;
-                const double steepest =
-                    std::max({std::abs(gradient.x), std::abs(gradient.y), std::abs(gradient.z), 0.5});
-                const double half = 0.5 * voxelSize / steepest;
-                // Layer k lies on the line between -phi_{k-1}/g and -phi_k/g.
-                for (int k = layers; k >= 0 && id == 0; --k) {
-                    if (k > 0 && nest[k][n]->buffer().data()[pos] == pore)
-                        continue;
-                    const double outer = std::min(half, -nest[k][n]->buffer().data()[pos] / g);
-                    const double inner =
-                        k == 0 ? -half
-                               : std::max(-half, -static_cast<double>(nest[k - 1][n]->buffer().data()[pos]) / g);
-                    if (outer - inner > (k == 0 ? 0.0 : presence))
-                        id = ids[k];
-                }
-            }
+        const auto set = [&](openvdb::Index pos, std::int32_t id) {
             if (leafIds[pos] != id) {
                 leafIds[pos] = id;
                 ++changed[n];
             }
-        });
+        };
+        const VoxelMask active = activeVoxelsOf(*top[n]);
+        const VoxelMask outside = voxelsWhere([=](unsigned i) { return surface[i] > air; });
+        const VoxelMask within = voxelsWhere([=](unsigned i) { return floor[i] < deep; });
+        const VoxelMask notAir = voxelsWhere([=](unsigned i) { return leafIds[i] != 0; });
+        const VoxelMask notMetal = voxelsWhere([=](unsigned i) { return leafIds[i] != 1; });
+        std::array<std::uint16_t, 512> voxels;
+        int count = 0;
+        for (openvdb::Index w = 0; w < 8; ++w) {
+            const auto visit = [w](std::uint64_t word, auto what) {
+                for (; word; word &= word - 1)
+                    what(w * 64 + openvdb::util::FindLowestOn(word));
+            };
+            const std::uint64_t inner = within[w] & ~outside[w];
+            visit(active[w] & outside[w] & notAir[w], [&](openvdb::Index pos) { set(pos, 0); });
+            visit(active[w] & inner & notMetal[w], [&](openvdb::Index pos) { set(pos, 1); });
+            visit(active[w] & ~outside[w] & ~inner,
+                  [&](openvdb::Index pos) { voxels[count++] = static_cast<std::uint16_t>(pos); });
+        }
+        if (count == 0)
+            return;
+        // First all lines, whose roots do not wait for one another, then what they meet.
+        const LeafGradient gradients(lattice, top, n);
+        std::array<NormalLine, 512> lines;
+        for (int i = 0; i < count; ++i)
+            lines[i] = normalLine(gradients.at(voxels[i]), voxelSize, inverseVoxelSize);
+        for (int i = 0; i < count; ++i) {
+            const unsigned pos = voxels[i];
+            const double half = lines[i].half, thick = presence * lines[i].slope;
+            double outer = -double(surface[pos]);
+            std::int32_t id = 0;
+            if (outer > -half) {
+                // Layer k is met from -phi_{k-1} to -phi_k.
+                id = 1;
+                for (int k = layers; k > 0 && -double(floor[pos]) < half; --k) {
+                    const double inner = -double(values[k - 1][pos]);
+                    if (std::min(half, outer) - std::max(-half, inner) > thick && values[k][pos] != pore) {
+                        id = ids[k];
+                        break;
+                    }
+                    outer = inner;
+                }
+                // Where no layer is thick enough to show, the metal does, unless it ends below the voxel.
+                if (id == 1 && !(-double(floor[pos]) > -half))
+                    id = 0;
+            }
+            set(pos, id);
+        }
     });
     return std::accumulate(changed.begin(), changed.end(), std::size_t(0));
 }

@@ -1,12 +1,12 @@
 #include "volume/open_air.h"
 
+#include "volume/leaf_lattice.h"
 #include "volume/nest_sampler.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 namespace patina {
 
@@ -14,15 +14,17 @@ namespace {
 
 using Mask = OpenAir::Mask;
 
-/// Voxels of a leaf's air that touch within the leaf, and which of them lie on its faces: -x, +x, -y, +y, -z, +z.
-struct AirPart {
-    Mask voxels;
-    std::array<std::uint64_t, 6> faces;
-};
+/// Which voxels on a leaf's faces belong to a part of its air: -x, +x, -y, +y, -z, +z.
+using Faces = std::array<std::uint64_t, 6>;
 
+/// A leaf's air and its parts, which are what touches within the leaf. Almost always there is one, or none.
 struct LeafAir {
     Mask air;
-    std::vector<AirPart> parts;
+    int parts = 0;
+    Faces first;             ///< of the first part
+    std::vector<Faces> more; ///< of the others
+
+    const Faces& part(int i) const { return i == 0 ? first : more[i - 1]; }
 };
 
 int rootOf(std::vector<int>& parent, int i) {
@@ -39,28 +41,9 @@ void join(std::vector<int>& parent, int a, int b) {
 
 constexpr Mask full{~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull};
 
-// One bit for each value above zero.
-Mask signsOf(const float* phi) {
-    Mask mask;
-    for (std::uint64_t& word : mask) {
-        unsigned char above[64];
-        for (int i = 0; i < 64; ++i)
-            above[i] = phi[i] > 0.f;
-        word = 0;
-        for (int row = 0; row < 8; ++row) {
-            std::uint64_t bytes;
-            std::memcpy(&bytes, above + 8 * row, 8);
-            // Eight bytes of 0 or 1 become eight bits.
-            word |= (bytes * 0x0102040810204080ull >> 56) << (8 * row);
-        }
-        phi += 64;
-    }
-    return mask;
-}
-
 // Word x of a mask has bit 8 y + z.
-std::array<std::uint64_t, 6> facesOf(const Mask& m) {
-    std::array<std::uint64_t, 6> faces{m[0], m[7], 0, 0, 0, 0};
+Faces facesOf(const Mask& m) {
+    Faces faces{m[0], m[7], 0, 0, 0, 0};
     const auto everyEighth = [](std::uint64_t word) {
         return (word & 0x0101010101010101ull) * 0x0102040810204080ull >> 56;
     };
@@ -96,23 +79,33 @@ void flood(const Mask& air, Mask& part) {
     }
 }
 
-LeafAir airOf(const float* phi) {
-    LeafAir leaf{signsOf(phi), {}};
-    const Mask& air = leaf.air;
+// Calls visit(voxels) for every part of a leaf's air.
+template <typename Visit>
+void forParts(const Mask& air, Visit visit) {
+    if (air == full) {
+        visit(full);
+        return;
+    }
     Mask rest = air;
     for (int x = 0; x < 8; ++x)
         while (rest[x]) {
-            AirPart part{};
-            part.voxels[x] = rest[x] & (~rest[x] + 1);
-            if (air == full)
-                part.voxels = full;
-            flood(air, part.voxels);
+            Mask part{};
+            part[x] = rest[x] & (~rest[x] + 1);
+            flood(air, part);
             for (int i = 0; i < 8; ++i)
-                rest[i] &= ~part.voxels[i];
-            part.faces = facesOf(part.voxels);
-            leaf.parts.push_back(part);
+                rest[i] &= ~part[i];
+            visit(part);
         }
-    return leaf;
+}
+
+void readAir(const float* phi, LeafAir& leaf) {
+    leaf.air = voxelsWhere([phi](unsigned i) { return phi[i] > 0.f; });
+    forParts(leaf.air, [&](const Mask& part) {
+        if (leaf.parts++ == 0)
+            leaf.first = facesOf(part);
+        else
+            leaf.more.push_back(facesOf(part));
+    });
 }
 
 bool has(const Mask& mask, int voxel) {
@@ -141,10 +134,10 @@ void OpenAir::find(const NestGrids& grids, int top, double voxelSize) {
     if (leaves.empty())
         return;
     std::vector<LeafAir> air(leaves.size());
-    tbb::parallel_for(std::size_t(0), leaves.size(),
-                      [&](std::size_t n) { air[n] = airOf(leaves[n]->buffer().data()); });
+    tbb::parallel_for(std::size_t(0), leaves.size(), [&](std::size_t n) { readAir(leaves[n]->buffer().data(), air[n]); });
 
-    // Nodes: 0 is the outside, then the parts of each leaf, then the blocks of 8³ that hold no leaf and are air.
+    // Nodes: 0 is the outside, then the parts of each leaf, then the runs along z of blocks of 8³ that hold no leaf and
+    // are air.
     const LeafLattice lattice(leaves);
     const openvdb::CoordBBox& box = lattice.box();
     const openvdb::Coord size = box.dim();
@@ -152,7 +145,7 @@ void OpenAir::find(const NestGrids& grids, int top, double voxelSize) {
     int nodes = 1;
     for (std::size_t n = 0; n < leaves.size(); ++n) {
         firstNode[n] = nodes;
-        nodes += static_cast<int>(air[n].parts.size());
+        nodes += air[n].parts;
     }
     std::vector<int> blockNode(std::size_t(size.x()) * size.y() * size.z(), -1);
     tbb::parallel_for(box.min().x(), box.max().x() + 1, [&](int i) {
@@ -163,66 +156,82 @@ void OpenAir::find(const NestGrids& grids, int top, double voxelSize) {
                 if (lattice.marked(slot) < 0 && accessor.getValue(openvdb::Coord(i, j, k) << 3) > 0.f)
                     blockNode[slot] = 0;
     });
-    for (int& node : blockNode)
-        if (node == 0)
-            node = nodes++;
+    const std::size_t rows = std::size_t(size.x()) * size.y(), length = size.z();
+    for (std::size_t row = 0; row < rows; ++row) {
+        int* const node = &blockNode[row * length];
+        for (std::size_t k = 0; k < length; ++k)
+            if (node[k] == 0)
+                node[k] = k > 0 && node[k - 1] >= 0 ? node[k - 1] : nodes++;
+    }
     std::vector<int> parent(nodes);
     for (int i = 0; i < nodes; ++i)
         parent[i] = i;
 
-    // Joins what touches across a face; a block without a leaf is all of one kind.
-    struct Side {
-        int node = -1;
-        const std::vector<AirPart>* parts = nullptr;
-    };
-    const auto sideOf = [&](const openvdb::Coord& block) {
-        if (!lattice.holds(block.x(), block.y(), block.z()))
-            return Side{0, nullptr};
-        const std::int32_t leaf = lattice.at(block.x(), block.y(), block.z());
-        return leaf < 0 ? Side{blockNode[lattice.slot(block)], nullptr} : Side{firstNode[leaf], &air[leaf].parts};
-    };
-    const auto joinAcross = [&](const Side& here, const Side& there, int face) {
-        const std::size_t mine = here.parts ? here.parts->size() : here.node >= 0,
-                          others = there.parts ? there.parts->size() : there.node >= 0;
-        for (std::size_t a = 0; a < mine; ++a)
-            for (std::size_t b = 0; b < others; ++b) {
-                const std::uint64_t mineThere = here.parts ? (*here.parts)[a].faces[face] : ~std::uint64_t(0),
-                                    othersHere = there.parts ? (*there.parts)[b].faces[face ^ 1] : ~std::uint64_t(0);
-                if (mineThere & othersHere)
-                    join(parent, here.node + static_cast<int>(a), there.node + static_cast<int>(b));
+    // Joins what touches across a face; a block without a leaf is all of one kind, and beyond the box all is outside.
+    const std::size_t stride[3] = {std::size_t(size.y()) * length, length, 1};
+    for (std::size_t row = 0; row < rows; ++row) {
+        const int i = int(row / size.y()), j = int(row % size.y());
+        const int* const node = &blockNode[row * length];
+        const bool atSide = i == 0 || j == 0 || i == size.x() - 1 || j == size.y() - 1;
+        for (std::size_t k = 0; k < length; ++k) {
+            if (node[k] < 0)
+                continue;
+            if (atSide || k == 0 || k == length - 1)
+                join(parent, node[k], 0);
+            if (i > 0 && node[k - stride[0]] >= 0)
+                join(parent, node[k], node[k - stride[0]]);
+            if (j > 0 && node[k - stride[1]] >= 0)
+                join(parent, node[k], node[k - stride[1]]);
+        }
+    }
+    for (std::size_t n = 0; n < leaves.size(); ++n) {
+        const openvdb::Coord block(leaves[n]->origin() >> 3);
+        for (int face = 0; face < 6; ++face) {
+            openvdb::Coord next = block;
+            next[face / 2] += face % 2 ? 1 : -1;
+            const bool within = lattice.holds(next.x(), next.y(), next.z());
+            const std::int32_t other = within ? lattice.at(next.x(), next.y(), next.z()) : -1;
+            if (other >= 0 && face % 2 == 0)
+                continue; // between two leaves from the lower one only
+            const int single = within ? other < 0 ? blockNode[lattice.slot(next)] : -1 : 0;
+            for (int a = 0; a < air[n].parts; ++a) {
+                const std::uint64_t mine = air[n].part(a)[face];
+                if (mine && single >= 0)
+                    join(parent, firstNode[n] + a, single);
+                for (int b = 0; mine && other >= 0 && b < air[other].parts; ++b)
+                    if (mine & air[other].part(b)[face ^ 1])
+                        join(parent, firstNode[n] + a, firstNode[other] + b);
             }
-    };
+        }
+    }
     // Of a region: air at a side of the box may go on beyond it.
-    openvdb::CoordBBox inside = grids.sides;
-    if (!inside.empty())
+    if (!grids.sides.empty()) {
+        openvdb::CoordBBox inside = grids.sides;
         inside.expand(-1);
-    const auto joinSides = [&](const openvdb::Coord& block, const Side& here) {
-        const openvdb::Coord origin = block << 3;
-        if (inside.empty() || inside.isInside(openvdb::CoordBBox::createCube(origin, 8)))
-            return;
-        if (!here.parts && here.node >= 0)
-            join(parent, here.node, 0);
-        for (std::size_t a = 0; here.parts && a < here.parts->size(); ++a)
-            for (int voxel = 0; voxel < 512; ++voxel)
-                if (has((*here.parts)[a].voxels, voxel) &&
-                    !inside.isInside(origin.offsetBy(voxel >> 6, (voxel >> 3) & 7, voxel & 7))) {
-                    join(parent, here.node + static_cast<int>(a), 0);
-                    break;
-                }
-    };
-    openvdb::Coord block;
-    for (block[0] = box.min().x(); block[0] <= box.max().x(); ++block[0])
-        for (block[1] = box.min().y(); block[1] <= box.max().y(); ++block[1])
-            for (block[2] = box.min().z(); block[2] <= box.max().z(); ++block[2]) {
-                const Side here = sideOf(block);
-                joinSides(block, here);
-                for (int face = 0; face < 6; ++face) {
-                    openvdb::Coord next = block;
-                    next[face / 2] += face % 2 ? 1 : -1;
-                    if (face % 2 || !box.isInside(next)) // between two blocks from the lower one only
-                        joinAcross(here, sideOf(next), face);
-                }
-            }
+        const auto isAtSide = [&](const openvdb::Coord& block) {
+            return !inside.isInside(openvdb::CoordBBox::createCube(block << 3, 8));
+        };
+        openvdb::Coord block;
+        for (block[0] = box.min().x(); block[0] <= box.max().x(); ++block[0])
+            for (block[1] = box.min().y(); block[1] <= box.max().y(); ++block[1])
+                for (block[2] = box.min().z(); block[2] <= box.max().z(); ++block[2])
+                    if (const int node = blockNode[lattice.slot(block)]; node >= 0 && isAtSide(block))
+                        join(parent, node, 0);
+        for (std::size_t n = 0; n < leaves.size(); ++n) {
+            if (!isAtSide(openvdb::Coord(leaves[n]->origin() >> 3)))
+                continue;
+            int node = firstNode[n];
+            forParts(air[n].air, [&](const Mask& part) {
+                for (int voxel = 0; voxel < 512; ++voxel)
+                    if (has(part, voxel) && !inside.isInside(leaves[n]->origin().offsetBy(
+                                                voxel >> 6, (voxel >> 3) & 7, voxel & 7))) {
+                        join(parent, node, 0);
+                        break;
+                    }
+                ++node;
+            });
+        }
+    }
 
     std::vector<char> closed(nodes, 0);
     for (int i = 1; i < nodes; ++i) {
@@ -234,11 +243,14 @@ void OpenAir::find(const NestGrids& grids, int top, double voxelSize) {
 
     sealed_.assign(leaves.size(), Mask{});
     std::vector<Mask> closedAir(leaves.size(), Mask{});
-    for (std::size_t n = 0; n < leaves.size(); ++n)
-        for (std::size_t a = 0; a < air[n].parts.size(); ++a)
-            if (closed[firstNode[n] + static_cast<int>(a)])
+    for (std::size_t n = 0; n < leaves.size(); ++n) {
+        int node = firstNode[n];
+        forParts(air[n].air, [&](const Mask& part) {
+            if (closed[node++])
                 for (int w = 0; w < 8; ++w)
-                    closedAir[n][w] |= air[n].parts[a].voxels[w];
+                    closedAir[n][w] |= part[w];
+        });
+    }
     std::vector<std::size_t> count(leaves.size(), 0);
     const NestSampler sampler(grids);
     // Is the air around a point in index space closed? 1 yes, 0 no, -1 there is none.
