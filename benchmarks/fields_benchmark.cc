@@ -74,10 +74,8 @@ void ExposureRays(benchmark::State& state) {
     double exposureSeconds = 0.0, embreeSeconds = 0.0, rays = 0.0;
     for (auto _ : state) {
         auto start = Clock::now();
-        benchmark::DoNotOptimize(gatherDome(
-            surface, voxelSize, dome, compass,
-            [&](const Imath::V3f& o, const Imath::V3f& d) { return scene.occluded(o, d, 0.f, endless); },
-            0.3 * voxelSize, {}, progress));
+        benchmark::DoNotOptimize(
+            gatherDome(surface, voxelSize, dome, compass, Obstacles::of(scene), {}, progress));
         exposureSeconds += secondsSince(start);
 
         std::vector<Imath::V3f> directions;

@@ -270,4 +270,10 @@ bool SurfaceBinding::occluded(const Imath::V3f& origin, const Imath::V3f& direct
     return scene_->occluded(origin, direction, 0.f, std::numeric_limits<float>::infinity());
 }
 
+std::optional<float> SurfaceBinding::firstHit(const Imath::V3f& origin, const Imath::V3f& direction,
+                                              float farthest) const {
+    const auto hit = scene_->intersect(origin, direction, 0.f, farthest);
+    return hit ? std::optional<float>(hit->distance) : std::nullopt;
+}
+
 } // namespace patina

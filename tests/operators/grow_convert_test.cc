@@ -71,6 +71,41 @@ TEST(GrowLayer, OfSeveralTheLowestThatIsThereGrows) {
     EXPECT_NEAR(column.thickness(3, 40.0, 30.0), 0.6, 0.003);
 }
 
+TEST(GrowLayer, EverywhereBeginsAnewInItsPlaceWhereTheLayerIsNot) {
+    const auto piece = test::makePiece(test::sheet(60.f, 60), test::voxelScale(), 6.0);
+    const test::FunctionMap left([](const MapPoint& point) { return point.position.x < 30.0 ? 1.0 : 0.0; });
+    auto work = piece->work();
+    coat(work, "cuprite_2", 0.2, nullptr, piece->progress);
+    coat(work, "posnjakite", 0.3, &left, piece->progress);
+    coat(work, "dirt", 0.1, nullptr, piece->progress);
+    growLayer(work, "posnjakite", 0.4, nullptr, piece->progress, true);
+    ASSERT_EQ(piece->volume->layers(), (std::vector<std::string>{"cuprite_2", "posnjakite", "dirt"}));
+    const test::Column column(*piece->volume, flat);
+    for (const double x : {12.0, 20.0, 40.0, 48.0}) {
+        EXPECT_NEAR(column.thickness(1, x, 30.0), 0.2, 0.002) << x;
+        EXPECT_NEAR(column.thickness(2, x, 30.0), x < 30.0 ? 0.7 : 0.4, 0.005) << x;
+        EXPECT_NEAR(column.thickness(3, x, 30.0), 0.1, 0.001) << x;
+    }
+    // In the lowest where it is in several, and anew only where it is in none.
+    coat(work, "posnjakite", 0.2, &left, piece->progress);
+    growLayer(work, "posnjakite", 0.1, nullptr, piece->progress, true);
+    const test::Column after(*piece->volume, flat);
+    EXPECT_NEAR(after.thickness(2, 20.0, 30.0), 0.8, 0.005);
+    EXPECT_NEAR(after.thickness(4, 20.0, 30.0), 0.2, 0.002);
+    EXPECT_NEAR(after.thickness(2, 40.0, 30.0), 0.5, 0.005);
+    EXPECT_NEAR(after.thickness(4, 40.0, 30.0), 0.0, 1e-4);
+    EXPECT_EQ(updateMaterialIds(*piece->volume), 0u);
+}
+
+TEST(GrowLayer, EverywhereLaysOnTopWhatNoLayerHolds) {
+    const auto piece = test::makePiece(test::sphere(20.f, 4), test::voxelScale(), 6.0);
+    auto work = piece->work();
+    coat(work, "dirt", 0.2, nullptr, piece->progress);
+    growLayer(work, "posnjakite", 0.3, nullptr, piece->progress, true);
+    ASSERT_EQ(piece->volume->layers(), (std::vector<std::string>{"dirt", "posnjakite"}));
+    EXPECT_LT(rmsError(*piece, 2, 0.3), 0.003);
+}
+
 TEST(GrowLayer, OfWhatIsNotThereDoesNothing) {
     const auto piece = test::makePiece(test::sphere(15.f, 4), test::voxelScale());
     auto work = piece->work();

@@ -116,14 +116,33 @@ std::vector<float> withoutGrain(const SurfaceVoxels& surface, const std::vector<
     return smooth;
 }
 
+// Voxels: from where the triangles are looked for, how deep below that, and how far above them rays leave.
+constexpr float searchFrom = 0.3f, searchDepth = 1.3f, clearance = 0.01f;
+
+V3f startOver(const V3f& foot, const V3f& normal, float voxelSize, const Obstacles& obstacles) {
+    const V3f above = foot + normal * (searchFrom * voxelSize);
+    const std::optional<float> depth = obstacles.first(above, -normal, searchDepth * voxelSize);
+    return depth ? above - normal * (*depth - clearance * voxelSize) : above;
+}
+
 } // namespace
 
+Obstacles Obstacles::of(const RayScene& scene) {
+    return {[&scene](const V3f& o, const V3f& d) {
+                return scene.occluded(o, d, 0.f, std::numeric_limits<float>::infinity());
+            },
+            [&scene](const V3f& o, const V3f& d, float farthest) -> std::optional<float> {
+                const auto hit = scene.intersect(o, d, 0.f, farthest);
+                return hit ? std::optional<float>(hit->distance) : std::nullopt;
+            }};
+}
+
 std::vector<float> gatherDome(const SurfaceVoxels& surface, double voxelSize, const LightDome& dome,
-                              const Compass& compass, const Occlusion& occluded, double clearance,
-                              const DomeGathering& options, Progress& progress) {
+                              const Compass& compass, const Obstacles& obstacles, const DomeGathering& options,
+                              Progress& progress) {
     const DomeGatherer gatherer(dome, compass, options);
     std::vector<float> values(surface.size());
-    const auto size = static_cast<float>(voxelSize), start = static_cast<float>(clearance);
+    const auto size = static_cast<float>(voxelSize);
     // In slices, so that the one thread that reports does so between them.
     constexpr std::size_t slices = 50;
     for (std::size_t slice = 0; slice < slices; ++slice) {
@@ -134,8 +153,8 @@ std::vector<float> gatherDome(const SurfaceVoxels& surface, double voxelSize, co
             // Every set once in 4³ voxels; 37 is odd, so neighbours get blocks that are far apart in the sequence.
             const Imath::V3i& v = surface.voxels[i];
             const int set = (((v.x & 3) << 4 | (v.y & 3) << 2 | (v.z & 3)) * 37) & (DomeGatherer::sets - 1);
-            const V3f position = surface.feet[i] * size + surface.normals[i] * start;
-            values[i] = static_cast<float>(gatherer.irradiance(position, surface.normals[i], set, occluded));
+            const V3f position = startOver(surface.feet[i] * size, surface.normals[i], size, obstacles);
+            values[i] = static_cast<float>(gatherer.irradiance(position, surface.normals[i], set, obstacles.occluded));
         });
         progress.checkpoint();
         progress.update(double(slice + 1) / slices);

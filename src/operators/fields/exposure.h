@@ -4,13 +4,24 @@
 #include "base/progress.h"
 #include "operators/fields/light_dome.h"
 #include "operators/fields/surface_voxels.h"
+#include "surface/ray_scene.h"
 
 #include <functional>
+#include <optional>
 
 namespace patina {
 
 /// Whether something is in the way from an origin to infinity, scene units.
 using Occlusion = std::function<bool(const Imath::V3f& origin, const Imath::V3f& direction)>;
+
+/// What rays meet: the triangles of the surface, or of the whole model around it.
+struct Obstacles {
+    Occlusion occluded;
+    /// Distance of the first hit, in lengths of `direction`, if there is one up to `farthest`.
+    std::function<std::optional<float>(const Imath::V3f& origin, const Imath::V3f& direction, float farthest)> first;
+
+    static Obstacles of(const RayScene& scene); ///< which must outlive them
+};
 
 struct DomeGathering {
     int rays = 256;      ///< directions per place, 1 … 65536
@@ -24,12 +35,13 @@ struct DomeGathering {
 ///
 /// Directions are drawn once, by importance, for all places; 64 sets of them alternate from voxel to voxel, so that
 /// what is left of their error is fine grain and no edge of a shadow, and each voxel is averaged (by a plane)
-/// with its neighbours that face the same way. A ray whose direction lies behind the surface costs nothing. The same on any number of
-/// threads. \param clearance  how far along the normal rays start from the feet, scene units \throws RunError where the
-/// dome is dark; Interrupted
+/// with its neighbours that face the same way. A ray whose direction lies behind the surface costs nothing. Rays leave
+/// from the triangles themselves, which one ray back along the normal finds under each foot: the voxels' surface is
+/// rounder than they are, and a start above it would see over what is no higher than that. The same on any number of
+/// threads. \throws RunError where the dome is dark; Interrupted
 std::vector<float> gatherDome(const SurfaceVoxels& surface, double voxelSize, const LightDome& dome,
-                              const Compass& compass, const Occlusion& occluded, double clearance,
-                              const DomeGathering& options, Progress& progress);
+                              const Compass& compass, const Obstacles& obstacles, const DomeGathering& options,
+                              Progress& progress);
 
 /// The same for any points with normals: what gatherDome() does at the feet. `set` picks a set of directions, 0 … 63.
 class DomeGatherer {

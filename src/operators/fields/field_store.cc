@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 namespace patina {
 
@@ -23,14 +22,12 @@ namespace {
 
 /// Below this height of the stack, voxels, fields are those of the metal.
 constexpr double thinStack = 0.25;
-/// Rays start so far from the surface, voxels: it and the triangles that rays meet differ where edges are sharp.
-constexpr double clearanceVoxels = 0.3;
 /// Creases that hold water are those a ball of this part of the model's height cannot enter.
 constexpr double creaseRadius = 0.02;
 
 constexpr const char* originKey = "patina_field_origin";
 /// To be raised with every change of what fields are: those of older files are then computed again.
-constexpr const char* fieldsVersion = "fields 1";
+constexpr const char* fieldsVersion = "fields 2";
 
 std::string lengthForName(double um) {
     if (um >= 1e6)
@@ -159,28 +156,33 @@ std::vector<float> FieldStore::accessibilityValues(const AccessibilityRequest& r
 std::vector<float> FieldStore::gather(const LightDome& dome, const Compass& compass, const DomeGathering& options,
                                       Progress& progress) {
     const double voxelSize = scene_.volume->scale().voxelSize;
-    const auto run = [&](const Occlusion& occluded) {
-        return gatherDome(surface_.voxels, voxelSize, dome, compass, occluded, clearanceVoxels * voxelSize, options,
-                          progress);
+    const auto run = [&](const Obstacles& obstacles) {
+        return gatherDome(surface_.voxels, voxelSize, dome, compass, obstacles, options, progress);
     };
-    constexpr float far = std::numeric_limits<float>::infinity();
     if (scene_.whole)
-        return run([&](const V3f& o, const V3f& d) { return scene_.whole->occluded(o, d, 0.f, far); });
+        return run(Obstacles::of(*scene_.whole));
     if (surface_.layer == 0 && !scene_.volume->grids().metal)
-        return run([&](const V3f& o, const V3f& d) { return scene_.binding->occluded(o, d); });
+        return run({[&](const V3f& o, const V3f& d) { return scene_.binding->occluded(o, d); },
+                    [&](const V3f& o, const V3f& d, float far) { return scene_.binding->firstHit(o, d, far); }});
     const SurfaceMesh mesh = interfaceMesh(*scene_.volume, surface_.layer);
     const RayScene present(mesh.positions, mesh.triangles);
-    return run([&](const V3f& o, const V3f& d) { return present.occluded(o, d, 0.f, far); });
+    return run(Obstacles::of(present));
 }
 
 std::vector<float> FieldStore::exposureValues(const ExposureRequest& request, Progress& progress) {
     requireUp(scene_.up);
+    const std::string text = request.text();
+    if (lastExposure_.request == text && lastExposure_.surface == surface_.hash)
+        return lastExposure_.values;
     const Compass compass = Compass::from(scene_.up, request.north.value_or(Compass::usualNorth(scene_.up)));
     DomeGathering options;
     options.rays = request.rays;
     options.ground = request.ground;
     options.groundHeight = scene_.lowest;
-    return gather(makeLightDome(request.light), compass, options, progress);
+    lastExposure_.values = gather(makeLightDome(request.light), compass, options, progress);
+    lastExposure_.surface = surface_.hash;
+    lastExposure_.request = text;
+    return lastExposure_.values;
 }
 
 ThicknessMapPtr FieldStore::accessibility(const AccessibilityRequest& request, Progress& progress) {

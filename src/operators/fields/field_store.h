@@ -88,6 +88,12 @@ class FieldStore {
     Scene scene_;
     Surface surface_;
     bool surfaceKnown_ = false;
+    /// The last exposure, by voxels: wetness and exposure of one sky are asked for together.
+    struct {
+        std::uint64_t surface = 0;
+        std::string request; ///< empty: none yet
+        std::vector<float> values;
+    } lastExposure_;
     std::map<std::string, Kept> kept_;
 };
 
