@@ -1,6 +1,7 @@
 #pragma once
 // From a script's text to a program: every error of the script in one go, nothing left to go wrong by a name.
 
+#include "script/kinetics.h"
 #include "script/program.h"
 
 #include <array>
@@ -29,6 +30,7 @@ struct CheckContext {
     std::filesystem::path baseFolder;
     /// Values of `--set NAME=VALUE`, VALUE as typed ("0.3", "2mm").
     std::map<std::string, std::string> settings;
+    Kinetics kinetics;      ///< for iso9224() and expansion()
     bool checkFiles = true; ///< that textures and volumes exist
 
     // What this build implements. A word of the language that is missing here is an error of the script.

@@ -245,6 +245,10 @@ std::optional<Expression> ExpressionChecker::call(const SyntaxExpression& syntax
         return vertices(syntax);
     if (syntax.text == "noise" || syntax.text == "turbulence" || syntax.text == "facing")
         return geometric(syntax);
+    if (syntax.text == "iso9224")
+        return KineticsChecker(*this).iso9224(syntax);
+    if (syntax.text == "expansion")
+        return KineticsChecker(*this).expansion(syntax);
     return arithmetic(syntax);
 }
 

@@ -43,6 +43,7 @@ class ExpressionChecker {
   private:
     friend class GrowthChecker;
     friend class FieldChecker;
+    friend class KineticsChecker;
 
     std::optional<Expression> resolveNode(const SyntaxExpression& syntax);
     std::optional<Expression> name(const SyntaxExpression& syntax);
@@ -83,6 +84,21 @@ class FieldChecker {
     std::optional<bool> yesOrNo(const SyntaxExpression& syntax, const std::string& name);
     std::optional<std::vector<double>> numbers(const SyntaxExpression& syntax, std::size_t count,
                                                const std::string& what, const std::string& example);
+
+    ExpressionChecker& expressions_;
+};
+
+/// What metals lose over the years, and how minerals swell: constants.
+class KineticsChecker {
+  public:
+    explicit KineticsChecker(ExpressionChecker& expressions) : expressions_(expressions) {}
+
+    std::optional<Expression> iso9224(const SyntaxExpression& syntax);
+    std::optional<Expression> expansion(const SyntaxExpression& syntax);
+
+  private:
+    std::optional<std::string> word(const SyntaxExpression& syntax, const std::vector<std::string>& known,
+                                    const std::string& what);
 
     ExpressionChecker& expressions_;
 };

@@ -18,6 +18,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -92,9 +93,17 @@ class Run {
         }
         report.seconds = secondsSince(start);
         if (!stack_ && volume_ && volume_->layerCount() > 0)
-            stack_ = measureStack(*volume_, surface_).total;
+            stack_ = measureStack(*volume_, surface_, trianglesPerVoxel()).total;
         report.stack = stack_.value_or(LayerStatistics());
         result_.statements.push_back(std::move(report));
+    }
+
+    // Triangles much smaller than a voxel read the same again and again: after each statement one to a voxel's area is
+    // enough, and the report's last word, by all of them, comes from the finished volume.
+    std::size_t trianglesPerVoxel() const {
+        const double voxel = volume_->scale().voxelSize;
+        const double each = surface_.area() / double(std::max<std::size_t>(surface_.triangles.size(), 1));
+        return each > 0.0 ? std::size_t(std::clamp(voxel * voxel / each, 1.0, 1e6)) : 1;
     }
 
     static bool isNothing(const Statement& statement) {
@@ -378,7 +387,7 @@ void declareAbilities(CheckContext& context, const MaterialLibrary& materials) {
     context.operators = {"new", "open", "coat", "erode", "grow", "convert", "fill", "polish", "offset", "render"};
     context.functions = {"texture",  "vertices",      "noise",  "turbulence", "slope", "elevation", "facing",
                          "min",      "max",           "clamp",  "mix",        "pow",   "smoothstep",
-                         "exposure", "accessibility", "wetness"};
+                         "exposure", "accessibility", "wetness", "iso9224", "expansion"};
     context.clauses = {"by", "and", "above", "window", "of", "tangent-sphere", "global", "everywhere"};
 }
 

@@ -49,6 +49,8 @@ const std::vector<Signature>& signatures() {
         {"mix", "mix(a, b, share_of_b)", 3, 3},
         {"pow", "pow(base, exponent)", 2, 2},
         {"smoothstep", "smoothstep(from, to, value)", 3, 3},
+        {"iso9224", "iso9224(METAL, CATEGORY, years) or iso9224(METAL, CATEGORY, years, position)", 3, 4},
+        {"expansion", "expansion(MATERIAL)", 1, 1},
     };
     return all;
 }

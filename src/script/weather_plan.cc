@@ -20,7 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double paperYears = 20.0; // "almost negligible rate after about 20 years"
-constexpr double isoYears = 20.0;
 
 class PlanReader {
   public:
@@ -145,54 +144,6 @@ void readEvents(PlanReader& file, WeatherPlan& plan) {
               });
 }
 
-void readKinetics(const fs::path& path, const std::string& metal, const std::string& asked, WeatherPlan& plan,
-                  std::map<std::string, double>& expansions, std::vector<Diagnostic>& findings) {
-    PlanReader file(path, findings);
-    const toml::node* node = file.table().get(metal);
-    const toml::table* table = node ? node->as_table() : nullptr;
-    if (!table) {
-        file.reader().error(SourcePlace{path.string(), 1, 1}, fmt::format("there are no kinetics of '{}'", metal),
-                            fmt::format("'{}' asks for them", asked));
-        return;
-    }
-    plan.exponent = file.needed(*table, "exponent", 0.0, 2.0);
-    if (const toml::table* years = file.reader().subtable(*table, "first_year_um"))
-        for (const auto& entry : *years)
-            plan.firstYearUm[std::string(entry.first.str())] =
-                file.range(*years, std::string(entry.first.str()).c_str(), 1e5);
-    if (table->get("expansion"))
-        if (const toml::table* minerals = file.reader().subtable(*table, "expansion"))
-            for (const auto& entry : *minerals) {
-                const std::string mineral(entry.first.str());
-                expansions[mineral] = file.needed(*minerals, mineral.c_str(), 0.1, 100.0);
-            }
-}
-
-// Of a mineral of the table, or of a mixture of them; nothing where neither is known. The material's file is read by
-// the library as well, which tells its faults.
-std::optional<double> expansionOf(const fs::path& materials, const std::string& name,
-                                  const std::map<std::string, double>& minerals) {
-    if (const auto mineral = minerals.find(name); mineral != minerals.end())
-        return mineral->second;
-    const fs::path file = materials / (name + ".toml");
-    if (!fs::exists(file))
-        return std::nullopt;
-    double metal = 0.0; // thickness of metal in one of the mixture
-    try {
-        const toml::table table = toml::parse(readTextFile(file.string()));
-        if (const toml::array* parts = table["mixture"]["parts"].as_array())
-            for (const toml::node& part : *parts)
-                if (const toml::table* one = part.as_table()) {
-                    const auto mineral = minerals.find((*one)["material"].value_or(std::string()));
-                    if (mineral != minerals.end())
-                        metal += (*one)["volume"].value_or(0.0) / mineral->second;
-                }
-    } catch (const toml::parse_error&) {
-        return std::nullopt;
-    }
-    return metal > 0.0 ? std::optional<double>(1.0 / metal) : std::nullopt;
-}
-
 } // namespace
 
 std::vector<std::string> weatherPlans(const fs::path& dataFolder) {
@@ -227,12 +178,16 @@ WeatherPlan readWeatherPlan(const fs::path& dataFolder, const std::string& envir
     plan.retained = file.needed(file.table(), "retained", 0.0, 1.0);
     readLayers(file, plan);
     readEvents(file, plan);
-    std::map<std::string, double> expansions;
-    readKinetics(dataFolder / "weather" / "kinetics.toml", file.neededWord(file.table(), "kinetics"), name + ".toml",
-                 plan, expansions, findings);
+    const Kinetics kinetics = readKinetics(dataFolder, findings);
+    const std::string of = file.neededWord(file.table(), "kinetics");
+    if (const auto found = kinetics.metals.find(of); found != kinetics.metals.end())
+        plan.course = found->second;
+    else if (const toml::node* asked = file.table().get("kinetics"))
+        file.reader().error(*asked, fmt::format("there are no kinetics of '{}'", of), "kinetics.toml has those there are");
     const auto complete = [&](auto& layer) {
+        const auto known = kinetics.expansion.find(layer.material);
         if (layer.expansion == 0.0)
-            layer.expansion = expansionOf(dataFolder / "materials", layer.material, expansions).value_or(plan.expansion);
+            layer.expansion = known != kinetics.expansion.end() ? known->second : plan.expansion;
     };
     std::for_each(plan.oxides.begin(), plan.oxides.end(), complete);
     std::for_each(plan.minerals.begin(), plan.minerals.end(), complete);
@@ -274,23 +229,16 @@ double patinaThicknessUm(const WeatherPlan& plan, const WeatherKinetics& kinetic
         const double x = std::min(years / paperYears, 1.0);
         return paperYears * (least + (most - least) * kinetics.position) * x * (2.0 - x);
     }
-    const auto rate = plan.firstYearUm.find(kinetics.category);
-    if (rate == plan.firstYearUm.end()) {
+    const auto rate = plan.course.firstYearUm.find(kinetics.category);
+    if (rate == plan.course.firstYearUm.end()) {
         std::vector<std::string> names;
-        for (const auto& entry : plan.firstYearUm)
+        for (const auto& entry : plan.course.firstYearUm)
             names.push_back(entry.first);
         throw Error(ExitCode::commandLine, "--category",
                     fmt::format("'{}' is not a corrosivity category", kinetics.category),
                     fmt::format("ISO 9223 has {}", vocabulary::listed(names)));
     }
-    const auto [least, most] = rate->second;
-    // C1 begins at 0, between which and anything there is no geometric mean.
-    const double first = least > 0.0 ? least * std::pow(most / least, kinetics.position) : most * kinetics.position;
-    const double b = plan.exponent;
-    const double loss = years <= isoYears
-                            ? std::pow(years, b)
-                            : std::pow(isoYears, b) + b * std::pow(isoYears, b - 1.0) * (years - isoYears);
-    return plan.expansion * plan.retained * first * loss;
+    return plan.expansion * plan.retained * metalLossUm(plan.course.exponent, rate->second, kinetics.position, years);
 }
 
 std::vector<double> layerThicknessesUm(const WeatherPlan& plan, const WeatherKinetics& kinetics, double years) {

@@ -2,6 +2,8 @@
 // What the weather does to a metal: layers in their order, how thick they are after how many years, and where
 // (Dorsey & Hanrahan 1996, section 2.2 and figure 2; ISO 9223 and 9224 for the amounts).
 
+#include "script/kinetics.h"
+
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -70,9 +72,7 @@ struct WeatherPlan {
     /// is 1 / sum (v / e) over the minerals' shares of its volume; parts without metal, such as binder, count as room.
     double expansion = 1.0;
     double retained = 1.0;                ///< share of it that is not washed away
-    double exponent = 1.0;                ///< b of D = r t^b
-    /// First year's loss of metal by category, µm: least and most.
-    std::map<std::string, std::pair<double, double>> firstYearUm;
+    MetalKinetics course;                 ///< how the metal is lost
     std::vector<WeatherOxide> oxides;
     std::vector<WeatherMineral> minerals;
     std::vector<WeatherConversion> conversions;

@@ -9,7 +9,7 @@
 
 namespace patina {
 
-StackStatistics measureStack(const LayerVolume& volume, const SurfaceMesh& surface) {
+StackStatistics measureStack(const LayerVolume& volume, const SurfaceMesh& surface, std::size_t every) {
     const StackProbe probe(volume);
     const std::size_t layers = static_cast<std::size_t>(volume.layerCount());
     const std::size_t count = surface.triangles.size();
@@ -28,6 +28,8 @@ StackStatistics measureStack(const LayerVolume& volume, const SurfaceMesh& surfa
             const Imath::V3d a(surface.positions[corners[0]]), p(surface.positions[corners[1]]),
                 q(surface.positions[corners[2]]);
             area[t] = 0.5 * (p - a).cross(q - a).length();
+            if (t % every != 0)
+                continue;
             const SurfacePoint centre{static_cast<int>(t), 1.f / 3.f, 1.f / 3.f};
             const auto reading = probe.read(positionAt(surface, centre), normalAt(surface, centre),
                                             layers ? &thickness[t * layers] : none.data());
@@ -39,11 +41,12 @@ StackStatistics measureStack(const LayerVolume& volume, const SurfaceMesh& surfa
 
     StackStatistics result;
     const double metres = volume.scale().metresPerUnit;
-    double total = 0.0, read = 0.0, offsetSquares = 0.0;
+    double total = 0.0, asked = 0.0, read = 0.0, offsetSquares = 0.0;
     // The layers, their sum, and the metal that is gone.
     std::vector<double> sum(layers + 2, 0.0), squares(layers + 2, 0.0), most(layers + 2, 0.0), covered(layers + 2, 0.0);
     for (std::size_t t = 0; t < count; ++t) {
         total += area[t];
+        asked += t % every == 0 ? area[t] : 0.0;
         if (!found[t])
             continue;
         read += area[t];
@@ -79,7 +82,7 @@ StackStatistics measureStack(const LayerVolume& volume, const SurfaceMesh& surfa
     result.metalLoss = summarise(layers + 1, volume.metal());
     result.areaM2 = total * metres * metres;
     result.voxelizationErrorVoxels = std::sqrt(offsetSquares * weight) / volume.scale().voxelSize;
-    result.unreadable = total > 0.0 ? 1.0 - read / total : 0.0;
+    result.unreadable = asked > 0.0 ? 1.0 - read / asked : 0.0;
     return result;
 }
 

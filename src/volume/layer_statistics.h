@@ -4,6 +4,7 @@
 #include "surface/mesh.h"
 #include "volume/layer_volume.h"
 
+#include <cstddef>
 #include <vector>
 
 namespace patina {
@@ -27,7 +28,7 @@ struct StackStatistics {
     double unreadable = 0.0;              ///< fraction of the area where no base was found along the normal
 };
 
-/// Reads the stack at the centre of every triangle.
-StackStatistics measureStack(const LayerVolume& volume, const SurfaceMesh& surface);
+/// Reads the stack at the centre of every triangle, or of every second, third, … of them.
+StackStatistics measureStack(const LayerVolume& volume, const SurfaceMesh& surface, std::size_t every = 1);
 
 } // namespace patina

@@ -1,5 +1,6 @@
 #include "script_run.h"
 
+#include "data_folder.h"
 #include "export/texel_map.h"
 #include "outputs.h"
 #include "picture.h"
@@ -48,6 +49,7 @@ std::optional<VolumeScale> scaleOfOpened(const Program& program, const Options& 
 CheckContext checkContext(const MaterialLibrary& materials, const Options& options) {
     CheckContext context;
     declareAbilities(context, materials);
+    context.kinetics = readKinetics(findDataFolder());
     context.settings = options.settingMap();
     const Imath::V3d up = upVector(options.up);
     context.up = {up.x, up.y, up.z};
