@@ -4,6 +4,8 @@
 #include "surface/weld.h"
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -55,23 +57,61 @@ void forEachTwin(const Places& places, const std::vector<V3f>& normals, F f) {
 // millionth of a statue.
 std::vector<V3d> angleWeightedSums(const std::vector<V3d>& positions, const std::vector<V3i>& triangles) {
     std::vector<V3d> sums(positions.size(), V3d(0.0));
-    for (const V3i& t : triangles) {
-        const V3d corner[3] = {positions[std::size_t(t.x)], positions[std::size_t(t.y)], positions[std::size_t(t.z)]};
-        const V3d cross = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
-        const double area = cross.length();
-        if (!(area > 0.0))
-            continue;
-        for (int i = 0; i < 3; ++i) {
-            const V3d a = corner[(i + 1) % 3] - corner[i], b = corner[(i + 2) % 3] - corner[i];
-            sums[std::size_t(t[i])] += cross / area * std::atan2(area, a ^ b);
-        }
+    // Angles in parallel, block by block; added up in the order of the triangles, whatever the threads.
+    constexpr std::size_t block = 1 << 15;
+    std::vector<V3d> parts(3 * std::min(block, triangles.size()));
+    for (std::size_t begin = 0; begin < triangles.size(); begin += block) {
+        const std::size_t end = std::min(triangles.size(), begin + block);
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 1024), [&](const auto& range) {
+            for (std::size_t n = range.begin(); n != range.end(); ++n) {
+                const V3i& t = triangles[n];
+                const V3d corner[3] = {positions[std::size_t(t.x)], positions[std::size_t(t.y)],
+                                       positions[std::size_t(t.z)]};
+                const V3d cross = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+                const double area = cross.length();
+                for (int i = 0; i < 3; ++i) {
+                    const V3d a = corner[(i + 1) % 3] - corner[i], b = corner[(i + 2) % 3] - corner[i];
+                    parts[3 * (n - begin) + std::size_t(i)] =
+                        area > 0.0 ? cross / area * std::atan2(area, a ^ b) : V3d(0.0);
+                }
+            }
+        });
+        for (std::size_t n = begin; n < end; ++n)
+            for (int i = 0; i < 3; ++i)
+                sums[std::size_t(triangles[n][i])] += parts[3 * (n - begin) + std::size_t(i)];
     }
     return sums;
 }
 
 } // namespace
 
-SurfaceMesh displaced(const SurfaceMesh& surface, const std::vector<float>& heights) {
+struct Displacer::Seams {
+    const SurfaceMesh& surface;
+    Places places;
+    std::vector<V3d> normals; ///< geometric, angle-weighted, unit; of all vertices at a place together
+
+    explicit Seams(const SurfaceMesh& of) : surface(of), places(groupByPlace(of.positions)) {
+        std::vector<V3d> positions(surface.positions.size());
+        std::transform(surface.positions.begin(), surface.positions.end(), positions.begin(),
+                       [](const V3f& p) { return V3d(p); });
+        normals = normalsOf(positions);
+    }
+    std::vector<V3d> normalsOf(const std::vector<V3d>& positions) const {
+        const std::vector<V3d> sums = angleWeightedSums(positions, surface.triangles);
+        std::vector<V3d> out(positions.size(), V3d(0.0));
+        forEachTwin(places, surface.normals, [&](std::size_t a, std::size_t b) { out[a] += sums[b]; });
+        for (V3d& normal : out)
+            normal.normalize();
+        return out;
+    }
+};
+
+Displacer::Displacer(const SurfaceMesh& surface) : seams_(std::make_unique<const Seams>(surface)) {}
+Displacer::~Displacer() = default;
+Displacer::Displacer(Displacer&&) noexcept = default;
+
+SurfaceMesh Displacer::displaced(const std::vector<float>& heights) const {
+    const SurfaceMesh& surface = seams_->surface;
     const std::size_t count = surface.positions.size();
     if (heights.size() != count)
         throw RunError("displacement", fmt::format("{} heights for {} vertices", heights.size(), count));
@@ -80,28 +120,19 @@ SurfaceMesh displaced(const SurfaceMesh& surface, const std::vector<float>& heig
         throw RunError(fmt::format("displacement, vertex {}", bad - heights.begin()), "its height is not finite");
 
     SurfaceMesh out = surface;
-    const Places places = groupByPlace(surface.positions);
-    std::vector<V3d> before(count), after(count), shift(count, V3d(0.0));
+    std::vector<V3d> after(count), shift(count, V3d(0.0));
     std::vector<double> twins(count, 0.0);
-    forEachTwin(places, surface.normals, [&](std::size_t a, std::size_t b) {
+    forEachTwin(seams_->places, surface.normals, [&](std::size_t a, std::size_t b) {
         shift[a] += V3d(surface.normals[b]) * double(heights[b]);
         twins[a] += 1.0;
     });
     for (std::size_t i = 0; i < count; ++i) {
-        before[i] = V3d(surface.positions[i]);
-        after[i] = before[i] + shift[i] / twins[i];
+        after[i] = V3d(surface.positions[i]) + shift[i] / twins[i];
         out.positions[i] = V3f(after[i]);
     }
-
-    const std::vector<V3d> oldSums = angleWeightedSums(before, surface.triangles);
-    const std::vector<V3d> newSums = angleWeightedSums(after, surface.triangles);
-    std::vector<V3d> oldNormals(count, V3d(0.0)), newNormals(count, V3d(0.0));
-    forEachTwin(places, surface.normals, [&](std::size_t a, std::size_t b) {
-        oldNormals[a] += oldSums[b];
-        newNormals[a] += newSums[b];
-    });
+    const std::vector<V3d> normals = seams_->normalsOf(after);
     for (std::size_t i = 0; i < count; ++i) {
-        const V3d tilt = newNormals[i].normalized() - oldNormals[i].normalized();
+        const V3d tilt = normals[i] - seams_->normals[i];
         if (tilt == V3d(0.0))
             continue;
         const V3d normal = V3d(surface.normals[i]) + tilt;
@@ -109,6 +140,10 @@ SurfaceMesh displaced(const SurfaceMesh& surface, const std::vector<float>& heig
             out.normals[i] = V3f(normal.normalized());
     }
     return out;
+}
+
+SurfaceMesh displaced(const SurfaceMesh& surface, const std::vector<float>& heights) {
+    return Displacer(surface).displaced(heights);
 }
 
 } // namespace patina

@@ -3,6 +3,7 @@
 
 #include "surface/mesh.h"
 
+#include <memory>
 #include <vector>
 
 namespace patina {
@@ -13,5 +14,20 @@ namespace patina {
 /// mean: no seam cracks open; the two sides of a thin sheet stay apart.
 /// \throws RunError where the number of heights is not that of the vertices or one is not finite.
 SurfaceMesh displaced(const SurfaceMesh& surface, const std::vector<float>& heights);
+
+/// The same for one surface and many heights: its seams and its own geometric normals are looked for once.
+class Displacer {
+  public:
+    /// \param surface  must outlive this
+    explicit Displacer(const SurfaceMesh& surface);
+    ~Displacer();
+    Displacer(Displacer&&) noexcept;
+
+    SurfaceMesh displaced(const std::vector<float>& heights) const;
+
+  private:
+    struct Seams;
+    std::unique_ptr<const Seams> seams_;
+};
 
 } // namespace patina

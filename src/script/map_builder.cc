@@ -302,40 +302,48 @@ MapBuilder::GrowthSetup MapBuilder::setUpGrowth(const GrowthCall& call, double c
 
 std::shared_ptr<const GrowthPattern> MapBuilder::pattern(const GrowthLattice& cells, const GrowthOptions& options,
                                                          const std::string& label, Progress& progress) {
-    const auto make = [&] {
-        return std::make_shared<const GrowthPattern>(grow(cells, options, context_.seed, label, &progress));
-    };
     // What maps steer depends on more than its options; and large lattices are not worth their memory.
     constexpr std::size_t mostCells = 4'000'000, mostPatterns = 12;
     if (!options.arrival.empty() || !options.blocked.empty() || cells.size() > mostCells)
-        return make();
-    const std::string key = fmt::format(
-        "{} {} {:a} {:a} {} {} {} {:a} {:a} {:a} {} {}", int(options.model), int(options.rate), options.step,
-        options.total, options.ofFull, options.reach, options.patch, options.seeding, options.blockedFraction,
-        options.pointSpacing, static_cast<const void*>(&cells), label);
-    for (const auto& [name, kept] : recent_)
-        if (name == key)
-            return kept;
-    recent_.emplace_back(key, make());
+        return std::make_shared<const GrowthPattern>(grow(cells, options, context_.seed, label, &progress));
+    const std::string history = fmt::format(
+        "{} {} {:a} {} {} {} {:a} {:a} {:a} {} {}", int(options.model), int(options.rate), options.total, options.ofFull,
+        options.reach, options.patch, options.seeding, options.blockedFraction, options.pointSpacing,
+        static_cast<const void*>(&cells), label);
+    const Grown* earlier = nullptr;
+    for (const Grown& kept : recent_) {
+        if (kept.history != history || kept.step > options.step)
+            continue;
+        if (kept.step == options.step)
+            return kept.pattern;
+        if (!earlier || kept.step > earlier->step)
+            earlier = &kept;
+    }
+    auto made = std::make_shared<const GrowthPattern>(
+        earlier ? growOn(cells, options, context_.seed, label, *earlier->pattern, earlier->step, &progress)
+                : grow(cells, options, context_.seed, label, &progress));
+    recent_.push_back({history, options.step, made});
     if (recent_.size() > mostPatterns)
         recent_.pop_front();
-    return recent_.back().second;
+    return made;
 }
 
 ThicknessMapPtr MapBuilder::buildGrowth(const GrowthCall& call, Progress& progress) {
     const double byDefault = context_.longestSide / cellsPerLongestSide;
     const auto [cells, options] = setUpGrowth(call, cellOf(call, byDefault), progress);
+    // One history: the earlier step is part of the later one, and no cell has fallen since.
+    std::shared_ptr<const GrowthPattern> before;
+    if (call.since > 0) {
+        GrowthOptions earlier = options;
+        earlier.step = call.since;
+        before = pattern(cells, earlier, call.label, progress);
+    }
     const auto now = pattern(cells, options, call.label, progress);
     statistics_.push_back(now->statistics);
     std::vector<float> factor = now->factor;
-    if (call.since > 0) {
-        // One history: the earlier step is part of the later one, and no cell has fallen since.
-        GrowthOptions earlier = options;
-        earlier.step = call.since;
-        const auto before = pattern(cells, earlier, call.label, progress);
+    if (before)
         std::transform(factor.begin(), factor.end(), before->factor.begin(), factor.begin(),
                        [](float here, float then) { return std::max(0.f, here - then); });
-    }
     // Grains nobody chose are no finer than a preview shows them: it and the final have one look. What the script
     // gave is shown as finely as voxels can.
     const double grain = call.cellUm ? cells.cell : grainCells * cells.cell;

@@ -68,7 +68,8 @@ class MapBuilder {
     GrowthSetup setUpGrowth(const GrowthCall& call, double cell, Progress& progress);
     double cellOf(const GrowthCall& call, double byDefault) const;
     ThicknessMapPtr buildGrowth(const GrowthCall& call, Progress& progress);
-    /// grow(), or what it made for a map shortly before: frames of a series ask for the last one's step again.
+    /// grow(), or what it made for a map shortly before: frames of a series ask for the last one's step again, and for
+    /// later ones, which go on from it.
     std::shared_ptr<const GrowthPattern> pattern(const GrowthLattice& cells, const GrowthOptions& options,
                                                  const std::string& label, Progress& progress);
     ThicknessMapPtr buildCall(const Expression& expression, Progress& progress);
@@ -93,7 +94,13 @@ class MapBuilder {
     const SurfaceMesh* cellSurface_ = nullptr;                            ///< while maps are built for cells of a piece
     std::vector<GrowthStatistics> statistics_;
     std::unique_ptr<FieldStore> fields_;
-    std::deque<std::pair<std::string, std::shared_ptr<const GrowthPattern>>> recent_; ///< newest last
+    /// A step of a history: what all its options but the step make it.
+    struct Grown {
+        std::string history;
+        double step;
+        std::shared_ptr<const GrowthPattern> pattern;
+    };
+    std::deque<Grown> recent_; ///< newest last
 };
 
 } // namespace patina

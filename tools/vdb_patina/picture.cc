@@ -28,7 +28,7 @@ constexpr double bytesPerPixel = 160.0;
 
 // The model moved out to where the air begins, as coarse as it is: what the camera is placed by.
 SurfaceMesh sketchOf(const LayerVolume& volume, const Model& model, const StackOptics& optics) {
-    const StackShader shader(volume, model.surface, optics);
+    const StackShader shader(volume, model.surface, optics, StackReading::points); // heights only
     return displaced(model.surface, shader.vertexHeights());
 }
 
@@ -36,19 +36,39 @@ SurfaceMesh sketchOf(const LayerVolume& volume, const Model& model, const StackO
 // each vertex.
 struct ShownSurface {
     SurfaceMesh shown;
-    SurfaceMesh base;
+    SurfaceMesh underVoxels;           ///< from the volume
+    std::shared_ptr<DicedModel> diced; ///< from the mesh
     StackReading reading = StackReading::adaptive;
 
-    // The model in triangles of about a pixel, displaced by the stack under each vertex.
-    void takeMesh(const Model& model, const View& view, const Turn& turn, float margin, const LayerVolume& volume,
+    // The model in triangles of about a pixel, to be displaced by the stack under each vertex. Of a series the last
+    // picture's are taken where they would be the same.
+    void takeMesh(const Model& model, const View& view, const Turn& turn, float highest, const LayerVolume& volume,
                   const Options& options) {
+        const auto voxel = float(volume.scale().voxelSize);
         DiceOptions dice;
         dice.pictureHeight = view.height;
         dice.pixelsPerEdge = float(options.dice);
-        dice.longestEdge = 1.5f * float(volume.scale().voxelSize); // what the shader reads at vertices alone
-        dice.margin = margin;
         dice.toPicture = turn;
-        base = options.dice > 0.0 && volume.layerCount() > 0 ? diced(model.surface, view.camera, dice) : model.surface;
+        // In steps, so that a patina that grows a little changes nothing.
+        dice.margin = voxel;
+        while (dice.margin < highest)
+            dice.margin *= 2.f;
+        const bool dices = options.dice > 0.0 && volume.layerCount() > 0;
+        if (dices)
+            dice.longestEdge = 1.5f * voxel; // what the shader reads at vertices alone
+        const std::shared_ptr<DicedModel> kept = view.diced;
+        if (kept && kept->model == &model.surface && kept->margin == dice.margin &&
+            kept->longestEdge == dice.longestEdge) {
+            diced = kept;
+            return;
+        }
+        diced = kept ? kept : std::make_shared<DicedModel>();
+        diced->model = &model.surface;
+        diced->margin = dice.margin;
+        diced->longestEdge = dice.longestEdge;
+        diced->displacer.reset();
+        diced->surface = dices ? patina::diced(model.surface, view.camera, dice) : model.surface;
+        diced->displacer = std::make_unique<const Displacer>(diced->surface);
     }
 
     // The voxels' own surface. Its normals are the model's, tilted as the interface is against the base: facets and
@@ -56,21 +76,23 @@ struct ShownSurface {
     void takeVolume(const LayerVolume& volume, const Model& model) {
         reading = StackReading::vertices;
         shown = interfaceMesh(volume, volume.layerCount());
-        base.positions.resize(shown.positions.size());
-        base.normals.resize(shown.positions.size());
-        base.triangles = shown.triangles;
+        underVoxels.positions.resize(shown.positions.size());
+        underVoxels.normals.resize(shown.positions.size());
+        underVoxels.triangles = shown.triangles;
         const std::vector<Imath::V3f> under = baseNormals(volume, shown.positions);
         const RayScene rays(model.surface.positions, model.surface.triangles);
         tbb::parallel_for(std::size_t(0), shown.positions.size(), [&](std::size_t v) {
             const auto nearest = rays.closest(shown.positions[v]);
-            base.positions[v] = Imath::V3f(positionAt(model.surface, nearest->point));
-            base.normals[v] = Imath::V3f(normalAt(model.surface, nearest->point));
-            const Imath::V3f tilted = base.normals[v] + shown.normals[v] - under[v];
+            underVoxels.positions[v] = Imath::V3f(positionAt(model.surface, nearest->point));
+            underVoxels.normals[v] = Imath::V3f(normalAt(model.surface, nearest->point));
+            const Imath::V3f tilted = underVoxels.normals[v] + shown.normals[v] - under[v];
             // Over a thin edge the model's normal may look the other way: the interface's own is right there.
-            if (under[v].length2() > 0.f && (base.normals[v] ^ under[v]) > 0.5f && tilted.length2() > 0.04f)
+            if (under[v].length2() > 0.f && (underVoxels.normals[v] ^ under[v]) > 0.5f && tilted.length2() > 0.04f)
                 shown.normals[v] = tilted.normalized();
         });
     }
+
+    const SurfaceMesh& base() const { return diced ? diced->surface : underVoxels; }
 };
 
 void checkSize(const View& view, const Options& options) {
@@ -163,9 +185,9 @@ void writePicture(const LayerVolume& volume, const Model& model, const StackOpti
                        "move it away: a larger distance, or another direction");
     if (!ofVolume)
         surface.takeMesh(model, view, turn, highest, volume, options);
-    const StackShader shader(volume, surface.base, colours, surface.reading);
+    const StackShader shader(volume, surface.base(), colours, surface.reading);
     if (!ofVolume)
-        surface.shown = displaced(surface.base, shader.vertexHeights());
+        surface.shown = surface.diced->displacer->displaced(shader.vertexHeights());
     turn.apply(surface.shown);
     surface.shown.closed = sketch.closed;
 

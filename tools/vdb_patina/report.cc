@@ -21,6 +21,7 @@ Json describe(const LayerStatistics& layer) {
 
 Json describe(const GrowthStatistics& growth) {
     return {{"particles", growth.particles},
+            {"arrivals", growth.arrivals},
             {"mean_layers", growth.mean},
             {"interface_width_layers", growth.interfaceWidth},
             {"skewness", growth.skewness},

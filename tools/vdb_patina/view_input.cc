@@ -142,6 +142,8 @@ View stillViewOf(const Options& options, const Model& model) {
     subject.metresPerModelUnit = model.scale.metresPerUnit * model.magnification();
     View view = viewOf(options, subject);
     view.setting = model.surface.bounds();
+    if (!model.region) // which is turned anew for each picture
+        view.diced = std::make_shared<DicedModel>();
     return view;
 }
 

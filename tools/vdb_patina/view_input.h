@@ -1,6 +1,7 @@
 #pragma once
 // Camera and light as they are asked for on a command line.
 
+#include "diced_model.h"
 #include "model_input.h"
 #include "options.h"
 
@@ -10,6 +11,7 @@
 #include <Imath/ImathBox.h>
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -29,6 +31,7 @@ struct View {
     CameraView from;
     int width = 0, height = 0; ///< pixels
     std::optional<float> patch; ///< the side of a close-up, in the picture's units
+    std::shared_ptr<DicedModel> diced;   ///< of a series: left by one picture to the next
     std::optional<Imath::Box3f> setting; ///< what floor and backdrop are placed by; not set: the surface shown
 };
 

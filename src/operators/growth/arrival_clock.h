@@ -53,22 +53,30 @@ class ArrivalClock {
     const std::vector<float>& arrival_;
 };
 
-/// Hands every arrival up to `age` to rule(cell, time word, interval) in order of time, one after the other, while the
-/// next interval's arrivals are being drawn. rule.prefetch(cell) is called a little ahead.
+/// Hands every arrival from `since` up to `age` to rule(cell, time word, interval) in order of time, one after the
+/// other, while the next interval's arrivals are being drawn. rule.prefetch(cell) is called a little ahead. A history
+/// followed to `since` and then from there is the one followed at once. \return how many they were
 /// \throws Interrupted when cancelled.
 template <class Rule>
-void followArrivals(const ArrivalClock& clock, double age, Progress* progress, Rule&& rule) {
+std::uint64_t followArrivals(const ArrivalClock& clock, double since, double age, Progress* progress, Rule&& rule) {
     constexpr std::size_t ahead = 12;
+    const auto first = static_cast<std::uint32_t>(since);
     const auto intervals = static_cast<std::uint32_t>(std::ceil(age));
     const auto endOf = [age](std::uint32_t i) { return std::min(1.0, age - i); };
     std::vector<ArrivalClock::Arrival> now, next;
-    if (intervals > 0)
-        clock.interval(0, endOf(0), now);
-    for (std::uint32_t i = 0; i < intervals; ++i) {
+    if (intervals > first)
+        clock.interval(first, endOf(first), now);
+    // The word that ended the interval which was broken off.
+    const auto begun = static_cast<std::uint64_t>((since - first) * 4294967296.0) << 32;
+    std::uint64_t count = 0;
+    for (std::uint32_t i = first; i < intervals; ++i) {
         if (progress)
             progress->checkpoint();
         const auto apply = [&] {
-            for (std::size_t n = 0; n < now.size(); ++n) {
+            const std::size_t start =
+                i > first ? 0 : std::size_t(std::lower_bound(now.begin(), now.end(), begun) - now.begin());
+            count += now.size() - start;
+            for (std::size_t n = start; n < now.size(); ++n) {
                 if (n + ahead < now.size())
                     rule.prefetch(static_cast<std::uint32_t>(now[n + ahead]));
                 rule(static_cast<std::uint32_t>(now[n]), static_cast<std::uint32_t>(now[n] >> 32), i);
@@ -80,6 +88,7 @@ void followArrivals(const ArrivalClock& clock, double age, Progress* progress, R
             apply();
         now.swap(next);
     }
+    return count;
 }
 
 } // namespace patina

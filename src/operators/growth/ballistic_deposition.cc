@@ -18,7 +18,6 @@ struct BallisticRule {
     std::vector<std::int32_t>& height; ///< relief and particles
     const std::vector<std::int32_t>& relief;
     LevelOccupancy* occupancy;
-    std::uint64_t particles = 0;
 
     void prefetch(std::uint32_t cell) const {
         __builtin_prefetch(&neighbours[cell]);
@@ -30,7 +29,6 @@ struct BallisticRule {
         height[cell] = std::max({height[cell] + 1, height[n[0]], height[n[1]], height[n[2]], height[n[3]]});
         if (notesPlaces)
             occupancy->add(cell, height[cell] - relief[cell]);
-        ++particles;
     }
 };
 
@@ -38,9 +36,8 @@ template <bool notesPlaces>
 std::uint64_t deposit(const GrowthRun& run, const ArrivalClock& clock, std::vector<std::int32_t>& height,
                       const std::vector<std::int32_t>& relief) {
     const auto neighbours = closedNeighbours(run.lattice);
-    BallisticRule<notesPlaces> rule{neighbours, height, relief, run.occupancy};
-    followArrivals(clock, run.age, run.progress, rule);
-    return rule.particles;
+    return followArrivals(clock, run.since, run.age, run.progress,
+                          BallisticRule<notesPlaces>{neighbours, height, relief, run.occupancy});
 }
 
 } // namespace
@@ -52,9 +49,13 @@ GrownHeights growBallisticDeposition(const GrowthRun& run) {
     for (std::size_t i = 0; i < run.options.relief.size(); ++i)
         relief[i] = static_cast<std::int32_t>(std::lround(run.options.relief[i] + betweenLevels));
     std::vector<std::int32_t> height = relief;
+    if (run.earlier)
+        for (std::size_t i = 0; i < height.size(); ++i)
+            height[i] += static_cast<std::int32_t>(run.earlier->height[i]);
     GrownHeights grown;
-    grown.particles =
+    grown.arrivals =
         run.occupancy ? deposit<true>(run, clock, height, relief) : deposit<false>(run, clock, height, relief);
+    grown.particles = grown.arrivals + (run.earlier ? run.earlier->particles : 0);
     grown.height.resize(height.size());
     for (std::size_t i = 0; i < height.size(); ++i)
         grown.height[i] = static_cast<float>(height[i] - relief[i]);

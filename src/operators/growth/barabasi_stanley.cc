@@ -50,8 +50,8 @@ GrownHeights growBarabasiStanley(const GrowthRun& run) {
     const auto neighbours = closedNeighbours(run.lattice);
     std::vector<std::int32_t> height(run.lattice.size(), 0);
     DepinningRule rule{neighbours, run.lattice.keys, height, run, run.random("blocks"), 0};
-    followArrivals(clock, run.age, run.progress, rule);
     GrownHeights grown;
+    grown.arrivals = followArrivals(clock, 0.0, run.age, run.progress, rule);
     grown.particles = rule.particles;
     grown.height.assign(height.begin(), height.end());
     return grown;

@@ -165,10 +165,12 @@ GrownHeights growDirectedPercolation(const GrowthRun& run) {
                              run.options.arrival);
     const auto neighbours = closedNeighbours(run.lattice);
     std::vector<std::int32_t> level(run.lattice.size(), 0);
-    if (run.options.thickening > 0.0)
-        followArrivals(clock, run.age, run.progress,
-                       ThickeningRule{neighbours, covered, level, run.options.thickening});
+    if (run.earlier)
+        level.assign(run.earlier->height.begin(), run.earlier->height.end());
     GrownHeights grown;
+    if (run.options.thickening > 0.0)
+        grown.arrivals = followArrivals(clock, run.since, run.age, run.progress,
+                                        ThickeningRule{neighbours, covered, level, run.options.thickening});
     grown.height.resize(run.lattice.size());
     for (std::size_t i = 0; i < level.size(); ++i) {
         if (covered[i] <= run.age)

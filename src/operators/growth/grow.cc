@@ -59,6 +59,7 @@ GrownHeights runModel(const GrowthRun& run) {
 GrowthStatistics measure(const GrowthLattice& lattice, const GrownHeights& grown) {
     GrowthStatistics statistics = measureHeights(lattice, grown.height);
     statistics.particles = grown.particles;
+    statistics.arrivals = grown.arrivals;
     double area = 0.0;
     for (const float a : lattice.areas)
         area += a;
@@ -118,7 +119,7 @@ GrowthScale expectedScale(const GrowthOptions& given) {
     }
     const bool periodic = options.model != GrowthModel::steadyThickening;
     const GrowthLattice plane = flatLattice(side, side, periodic);
-    const GrowthRun run{plane, options, age, 0x9e3779b97f4a7c15u, "reference plane", nullptr, nullptr};
+    const GrowthRun run{plane, options, age, 0x9e3779b97f4a7c15u, "reference plane", nullptr};
     const GrowthStatistics statistics = measureHeights(plane, runModel(run).height);
     const GrowthScale scale{statistics.mean, statistics.interfaceWidth};
     const std::lock_guard<std::mutex> lock(mutex);
@@ -147,24 +148,52 @@ double growthMarginCells(const GrowthOptions& options) {
 std::vector<float> growHeights(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
                                std::string_view label, Progress* progress) {
     checkOptions(lattice, options);
-    return runModel({lattice, options, options.age(), seed, label, progress, nullptr}).height;
+    return runModel({lattice, options, options.age(), seed, label, progress}).height;
 }
 
-GrowthPattern grow(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
-                   std::string_view label, Progress* progress) {
-    checkOptions(lattice, options);
-    GrownHeights grown = runModel({lattice, options, options.age(), seed, label, progress, nullptr});
-    GrowthPattern pattern;
-    pattern.statistics = measure(lattice, grown);
+namespace {
 
-    pattern.factor.resize(lattice.size(), 0.f);
-    const double top = expectedScale(options).top();
+GrowthPattern patternOf(const GrowthRun& run) {
+    GrownHeights grown = runModel(run);
+    GrowthPattern pattern;
+    pattern.statistics = measure(run.lattice, grown);
+
+    pattern.factor.resize(run.lattice.size(), 0.f);
+    const double top = expectedScale(run.options).top();
     pattern.statistics.levelFactor = top > 0.0 ? 1.0 / top : 0.0;
     if (top > 0.0)
         std::transform(grown.height.begin(), grown.height.end(), pattern.factor.begin(),
                        [top](float h) { return static_cast<float>(std::clamp(h / top, 0.0, 1.0)); });
     pattern.height = std::move(grown.height);
     return pattern;
+}
+
+} // namespace
+
+GrowthPattern grow(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
+                   std::string_view label, Progress* progress) {
+    checkOptions(lattice, options);
+    return patternOf({lattice, options, options.age(), seed, label, progress});
+}
+
+GrowthPattern growOn(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
+                     std::string_view label, const GrowthPattern& earlier, double earlierStep, Progress* progress) {
+    const bool canGoOn =
+        options.model == GrowthModel::ballisticDeposition || options.model == GrowthModel::directedPercolation;
+    if (!canGoOn)
+        return grow(lattice, options, seed, label, progress);
+    checkOptions(lattice, options);
+    check(earlierStep >= 0.0 && earlierStep <= options.step, "a history cannot go back", "give an earlier step");
+    check(earlier.height.size() == lattice.size(), "a pattern of another lattice", "give one of the same history");
+    GrowthOptions before = options;
+    before.step = earlierStep;
+    GrownHeights begun;
+    begun.height = earlier.height;
+    begun.particles = earlier.statistics.particles;
+    GrowthRun run{lattice, options, options.age(), seed, label, progress};
+    run.earlier = &begun;
+    run.since = before.age();
+    return patternOf(run);
 }
 
 GrownParticles growParticles(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
@@ -179,7 +208,7 @@ GrownParticles growParticles(const GrowthLattice& lattice, const GrowthOptions& 
     if (since > 0.0) {
         GrowthOptions earlier = options;
         earlier.step = since;
-        GrownHeights before = runModel({lattice, earlier, earlier.age(), seed, label, progress, nullptr});
+        GrownHeights before = runModel({lattice, earlier, earlier.age(), seed, label, progress});
         grown.particles -= before.particles;
         grown.solid -= before.solid;
         for (std::size_t i = 0; i < grown.height.size(); ++i)

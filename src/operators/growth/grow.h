@@ -38,6 +38,12 @@ struct GrowthScale {
 GrowthPattern grow(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
                    std::string_view label, Progress* progress = nullptr);
 
+/// The same, going on from the pattern that an earlier step of the same history made (options.step aside, its options
+/// were these): the same bits for the work of what has grown since in BD and DPD. Other models grow from the start.
+GrowthPattern growOn(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
+                     std::string_view label, const GrowthPattern& earlier, double earlierStep,
+                     Progress* progress = nullptr);
+
 /// The heights alone, without factors (and the reference plane they cost) and statistics.
 std::vector<float> growHeights(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
                                std::string_view label, Progress* progress = nullptr);

@@ -16,6 +16,14 @@
 
 namespace patina {
 
+/// What a model gives back.
+struct GrownHeights {
+    std::vector<float> height;   ///< layers
+    std::uint64_t particles = 0; ///< that stayed
+    std::uint64_t arrivals = 0;  ///< that this run has followed
+    double solid = -1.0;         ///< solid volume in cell³; negative: as much as the heights hold (compact)
+};
+
 struct GrowthRun {
     const GrowthLattice& lattice;
     const GrowthOptions& options;
@@ -24,6 +32,9 @@ struct GrowthRun {
     std::string_view label;
     Progress* progress;
     LevelOccupancy* occupancy = nullptr; ///< where given, BD notes the place of every particle
+    /// Where given, BD and DPD go on from what had grown at the age `since`; other models begin anew.
+    const GrownHeights* earlier = nullptr;
+    double since = 0.0;
 
     /// A stream of random numbers of this history, for one of the model's purposes.
     KeyedRandom random(std::string_view purpose) const {
@@ -33,13 +44,6 @@ struct GrowthRun {
     double blockedAt(std::size_t cell) const {
         return options.blocked.empty() ? options.blockedFraction : options.blocked[cell];
     }
-};
-
-/// What a model gives back.
-struct GrownHeights {
-    std::vector<float> height;   ///< layers
-    std::uint64_t particles = 0; ///< that stayed
-    double solid = -1.0;         ///< solid volume in cell³; negative: as much as the heights hold (compact)
 };
 
 GrownHeights growSteadyThickening(const GrowthRun& run);

@@ -11,6 +11,7 @@ namespace patina {
 /// Heights in layers (of one cell's thickness), weighted by area.
 struct GrowthStatistics {
     std::uint64_t particles = 0; ///< that stayed
+    std::uint64_t arrivals = 0;  ///< that were followed for it: where a history went on, those since then (RD, ST: none)
     double mean = 0.0;
     double interfaceWidth = 0.0; ///< rms deviation of the height (Rq)
     double skewness = 0.0;
@@ -21,7 +22,7 @@ struct GrowthStatistics {
     double levelUm = 0.0;     ///< of a coat: what a layer of these heights is worth, real µm
 };
 
-/// Everything but `particles` and `density`.
+/// Everything but `particles`, `arrivals` and `density`.
 GrowthStatistics measureHeights(const GrowthLattice& lattice, const std::vector<float>& heights);
 
 } // namespace patina

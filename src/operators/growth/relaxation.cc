@@ -123,7 +123,7 @@ GrownHeights growRelaxation(const GrowthRun& run) {
     RelaxationRule rule{neighbours, thickness, offset, level, count, run.options.reach, 0, {}, {}, 0};
     if (run.options.reach > 1)
         rule.mark.assign(lattice.size(), 0);
-    followArrivals(clock, run.age, run.progress, rule);
+    grown.arrivals = followArrivals(clock, 0.0, run.age, run.progress, rule);
     grown.particles = rule.particles;
     grown.height.resize(lattice.size());
     for (std::size_t i = 0; i < lattice.size(); ++i)

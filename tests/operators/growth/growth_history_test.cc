@@ -56,6 +56,24 @@ TEST(GrowthHistory, laterStepsContainEarlierOnes) {
     }
 }
 
+TEST(GrowthHistory, goesOnFromAnEarlierStepForTheWorkOfTheRest) {
+    const GrowthLattice lattice = surfaceLattice(test::sphere(1.0, 20), 0.02);
+    for (const GrowthModel model : allModels)
+        for (const auto& [from, to] : {std::pair(2.3, 5.0), std::pair(2.3, 2.7), std::pair(5.0, 10.0), std::pair(4.0, 4.0)}) {
+            const GrowthPattern earlier = grow(lattice, at(model, from, 20), 7, "on");
+            const GrowthPattern direct = grow(lattice, at(model, to, 20), 7, "on");
+            const GrowthPattern later = growOn(lattice, at(model, to, 20), 7, "on", earlier, from);
+            EXPECT_EQ(later.height, direct.height) << growthModelName(model) << ", " << from << " to " << to;
+            EXPECT_EQ(later.factor, direct.factor);
+            EXPECT_EQ(later.statistics.particles, direct.statistics.particles);
+            EXPECT_EQ(later.statistics.density, direct.statistics.density);
+            if (model == GrowthModel::ballisticDeposition || model == GrowthModel::directedPercolation)
+                EXPECT_EQ(earlier.statistics.arrivals + later.statistics.arrivals, direct.statistics.arrivals);
+        }
+    const GrowthPattern five = grow(lattice, at(GrowthModel::ballisticDeposition, 5, 20), 7, "on");
+    EXPECT_THROW(growOn(lattice, at(GrowthModel::ballisticDeposition, 4, 20), 7, "on", five, 5), RunError);
+}
+
 TEST(GrowthHistory, depositsOfAnEarlierStepAreThoseOfTheLater) {
     // Between steps 5 and 5.01 a hundredth of the cells see a particle; were it another history, most would differ.
     const GrowthLattice plane = flatLattice(128, 128, true);
