@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace patina {
@@ -17,11 +18,17 @@ namespace {
 
 constexpr float noVoxel = std::numeric_limits<float>::max();
 constexpr float least = 0.02f; // of a voxel: a crossing stays clear of voxel centres
-// Of a voxel: half a voxel and a little. Corners and edges of particles are cut by the trilinear field, more than pores
-// gain: at this value a layer of BD reads as thick as its particles are (0.943 of it at 0.5, 1.125 at 0.65; cells of
-// two and three voxels ask for 0.544 and 0.557).
-constexpr float particle = 0.545f;
 constexpr float bare = 1e-3f;  // of a voxel: a column that ends no higher is none
+
+/// How deep a solid voxel of a porous layer lies, voxels, by how much of what is around it is solid (64ths; itself 8, its
+/// neighbours 4, 2 and 1). The trilinear field cuts corners and edges of particles: a single voxel at 0.5 would read as
+/// 0.27 of itself, a column as 0.6. Exact for those would be 1.2 and 0.8; the curve through them and 0.5 for a plane,
+/// fitted so that layers of BD of cells of one, two and three voxels, on a plate and turned out of the voxels' axes, read
+/// as thick as their particles are (one value for all reads 8 % too little of single voxels where larger cells are right).
+float particleDepth(int solidAround) {
+    const float missing = std::max(0.f, 0.75f - static_cast<float>(solidAround) / 64.f);
+    return std::min(1.2f, 0.52f + 2.4f * missing * missing * missing);
+}
 
 /// A leaf's values with one voxel around it, 10³ of them; noVoxel outside the band.
 struct PaddedLeaf {
@@ -57,6 +64,7 @@ struct Neighbourhood {
     float top = -noVoxel; ///< highest and lowest end of a column
     float bottom = noVoxel;
     float solidTop = -noVoxel; ///< highest end of a column at a solid voxel
+    int solidAround = 0;       ///< as particleDepth() wants it
 
     Neighbourhood(const PaddedLeaf& phi, const PaddedLeaf& offset, std::size_t centre) {
         for (int x = -1; x <= 1; ++x)
@@ -70,6 +78,7 @@ struct Neighbourhood {
                     top = std::max(top, end);
                     bottom = std::min(bottom, end);
                     if (c <= 0.f) {
+                        solidAround += (2 - std::abs(x)) * (2 - std::abs(y)) * (2 - std::abs(z));
                         highestSolid = std::max(highestSolid, p);
                         solidTop = std::max(solidTop, end);
                     } else {
@@ -80,14 +89,18 @@ struct Neighbourhood {
     bool isMixed() const { return highestSolid > -noVoxel && lowestEmpty < noVoxel; }
 };
 
-/// The value of a voxel next to the surface, voxels.
+/// The value of a voxel next to the surface, voxels; 0 where it is a particle's or a pore's, which their side and
+/// neighbours tell.
 float valueBeside(const Neighbourhood& near, float phi, float c, bool porous) {
     const bool solid = c <= 0.f;
     const auto apart = [solid](float value) { return solid ? std::min(value, -least) : std::max(value, least); };
     if (porous) {
         if (near.highestSolid < near.lowestEmpty)
             return near.solidTop < bare ? phi : apart(phi - near.solidTop);
-        return solid ? -particle : 0.5f;
+        if (solid && phi <= 0.f)
+            return phi; // what the layer stands on
+        // Beside low pores, whose value is their height, particles as low weigh no more.
+        return solid && phi < 1.f ? apart(-phi * particleDepth(near.solidAround)) : 0.f;
     }
     if (near.top < bare && near.bottom > -bare)
         return phi;
@@ -104,11 +117,12 @@ bool holds(const VoxelMask& mask, openvdb::Index pos) {
     return mask[pos >> 6] >> (pos & 63) & 1;
 }
 
-/// The voxels of a leaf that lie beside the surface. In a porous layer most have one of two values, told by their side.
+/// The voxels of a leaf that lie beside the surface.
 struct BesideSurface {
     VoxelMask voxels{};
-    VoxelMask usual{}; ///< those of them that have the usual value of their side
+    VoxelMask porous{};        ///< those of them that are particles or pores
     std::vector<float> values; ///< of the others, scene units, in order
+    std::vector<std::uint8_t> solidAround; ///< of the particles, in order
 };
 
 /// Cells near voxels that ask for a distance: the surface within a porous layer is nobody's nearest, and its points
@@ -166,7 +180,6 @@ void interfaceOfVoxels(const openvdb::FloatGrid& surface, openvdb::FloatGrid& gr
     const auto leaves = leavesOf(grid.tree());
     const std::vector<const FloatLeaf*> offsetLeaves(leaves.begin(), leaves.end());
     const LeafLattice lattice(phiLeaves);
-    const auto usual = [voxelSize](float c) { return (c <= 0.f ? -particle : 0.5f) * voxelSize; };
 
     std::vector<BesideSurface> beside(phiLeaves.size());
     std::vector<char> hasSurface(phiLeaves.size(), 0);
@@ -192,17 +205,19 @@ void interfaceOfVoxels(const openvdb::FloatGrid& surface, openvdb::FloatGrid& gr
             if (!near.isMixed())
                 return;
             const float c = offset.values[centre], p = phi.values[centre];
-            float value = valueBeside(near, p, c, porous) * voxelSize;
-            if (value == p * voxelSize)
-                value = phiValues[pos];
+            const float value = valueBeside(near, p, c, porous);
             const std::uint64_t bit = std::uint64_t(1) << (pos & 63);
             here.voxels[pos >> 6] |= bit;
-            if (value == usual(c))
-                here.usual[pos >> 6] |= bit;
-            else
-                here.values.push_back(value);
+            if (porous && value == 0.f && p > 0.f) {
+                here.porous[pos >> 6] |= bit;
+                if (c <= 0.f)
+                    here.solidAround.push_back(static_cast<std::uint8_t>(near.solidAround));
+            } else {
+                here.values.push_back(value == p ? phiValues[pos] : value * voxelSize);
+            }
         });
         here.values.shrink_to_fit();
+        here.solidAround.shrink_to_fit();
         hasSurface[n] = !here.values.empty() ||
                         std::any_of(here.voxels.begin(), here.voxels.end(), [](std::uint64_t w) { return w != 0; });
     });
@@ -213,17 +228,20 @@ void interfaceOfVoxels(const openvdb::FloatGrid& surface, openvdb::FloatGrid& gr
     tbb::parallel_for(std::size_t(0), leaves.size(), [&](std::size_t n) {
         const float* phi = phiLeaves[n]->buffer().data();
         float* values = leaves[n]->buffer().data();
-        std::size_t next = 0;
+        std::size_t next = 0, nextParticle = 0;
         forActive(*phiLeaves[n], [&](openvdb::Index pos) {
             const float c = values[pos];
             if (!anySurface)
                 values[pos] = phi[pos];
             else if (!holds(beside[n].voxels, pos))
                 values[pos] = std::copysign(std::clamp(std::abs(c), 1.f, 1.5f), c <= 0.f ? -1.f : 1.f) * voxelSize;
+            else if (!holds(beside[n].porous, pos))
+                values[pos] = beside[n].values[next++];
             else
-                values[pos] = holds(beside[n].usual, pos) ? usual(c) : beside[n].values[next++];
+                values[pos] = voxelSize * (c > 0.f ? 0.5f : -particleDepth(beside[n].solidAround[nextParticle++]));
         });
         std::vector<float>().swap(beside[n].values);
+        std::vector<std::uint8_t>().swap(beside[n].solidAround);
     });
     if (!anySurface)
         return;
