@@ -1,9 +1,12 @@
 #include "surface/region_charts.h"
 
+#include "surface/chart_overlap.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <deque>
 #include <numeric>
 #include <unordered_map>
 #include <utility>
@@ -83,6 +86,51 @@ Patches connect(const Adjacency& adjacency, const std::vector<int>& label) {
         ++patches.count;
     }
     return patches;
+}
+
+/// Patches whose projections lie on themselves (a spiral, drapery over drapery) are taken apart: each part grows from its
+/// first triangle as long as nothing is in the way.
+Patches separateOverlaps(const SurfaceMesh& surface, const Adjacency& adjacency, const Patches& given,
+                         const std::vector<Projection>& projections) {
+    const std::size_t count = surface.triangles.size();
+    double edges = 0.0;
+    for (const V3i& t : surface.triangles)
+        edges += (V3d(surface.positions[t[1]]) - V3d(surface.positions[t[0]])).length();
+    // A mesh of few long triangles must not be sorted into millions of squares.
+    double extent = 0.0;
+    for (const Imath::V3f& p : surface.positions)
+        extent = std::max(extent, (V3d(p) - V3d(surface.positions[0])).length());
+    const double cell = std::max({edges / static_cast<double>(count), extent / 512.0, 1e-30});
+    Patches parts;
+    parts.of.assign(count, -1);
+    std::deque<int> front;
+    for (int seed = 0; seed < static_cast<int>(count); ++seed) {
+        if (parts.of[seed] >= 0)
+            continue;
+        const int patch = given.of[seed];
+        const Projection& projection = projections[patch];
+        FlatTriangles taken(cell);
+        front.assign(1, seed);
+        while (!front.empty()) {
+            const int t = front.front();
+            front.pop_front();
+            if (parts.of[t] >= 0)
+                continue;
+            FlatTriangle flat;
+            for (int c = 0; c < 3; ++c) {
+                const V3d p(surface.positions[surface.triangles[t][c]]);
+                flat[c] = V2d(p.dot(projection.u), p.dot(projection.v));
+            }
+            if (!taken.add(flat))
+                continue;
+            parts.of[t] = parts.count;
+            for (const int n : adjacency.of(t))
+                if (n >= 0 && parts.of[n] < 0 && given.of[n] == patch)
+                    front.push_back(n);
+        }
+        ++parts.count;
+    }
+    return parts;
 }
 
 int dominantLabel(const V3d& n) {
@@ -192,10 +240,15 @@ void makeProjectedCharts(SurfaceMesh& surface, const V3d& up, int resolution, in
             label[t] = dominantLabel(areas[t]);
         joinSmallPatches(adjacency, areas, label);
     }
-    const Patches patches = connect(adjacency, label);
-    std::vector<Projection> projections(patches.count);
-    for (std::size_t t = 0; t < count; ++t)
-        projections[patches.of[t]] = projectionAlong(facesOneWay ? mean : axisOf(label[t]), up);
+    const auto projectionsOf = [&](const Patches& patches) {
+        std::vector<Projection> projections(patches.count);
+        for (std::size_t t = 0; t < count; ++t)
+            projections[patches.of[t]] = projectionAlong(facesOneWay ? mean : axisOf(label[t]), up);
+        return projections;
+    };
+    const Patches connected = connect(adjacency, label);
+    const Patches patches = separateOverlaps(surface, adjacency, connected, projectionsOf(connected));
+    const std::vector<Projection> projections = projectionsOf(patches);
 
     // One UV per vertex and patch.
     std::vector<Chart> charts(patches.count);
@@ -243,6 +296,18 @@ void makeProjectedCharts(SurfaceMesh& surface, const V3d& up, int resolution, in
         const Chart& chart = charts[chartOf[i]];
         surface.uvs.emplace_back(V2f(chart.place + (flat[i] - chart.low) * low));
     }
+}
+
+void makeProjectedCharts(Mesh& mesh, const V3d& up, int resolution, int gapTexels) {
+    SurfaceMesh surface;
+    surface.positions = mesh.positions;
+    for (std::size_t i = 0; i + 2 < mesh.faceVertices.size(); i += 3)
+        surface.triangles.emplace_back(mesh.faceVertices[i], mesh.faceVertices[i + 1], mesh.faceVertices[i + 2]);
+    makeProjectedCharts(surface, up, resolution, gapTexels);
+    mesh.uvs = std::move(surface.uvs);
+    mesh.faceUvs.clear();
+    for (const V3i& uv : surface.triangleUvs)
+        mesh.faceUvs.insert(mesh.faceUvs.end(), {uv[0], uv[1], uv[2]});
 }
 
 } // namespace patina

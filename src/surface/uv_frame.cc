@@ -68,10 +68,10 @@ TangentFrames::TangentFrames(const SurfaceMesh& surface)
                     continue;
                 corners_[other][c] = id;
                 const V3d p(surface.positions[v]);
-                const V3d a = V3d(surface.positions[surface.triangles[other][(c + 1) % 3]]) - p;
-                const V3d b = V3d(surface.positions[surface.triangles[other][(c + 2) % 3]]) - p;
-                V3d tangent(along[other]);
-                tangent -= normal * tangent.dot(normal);
+                const auto inPlane = [&](const V3d& vector) { return vector - normal * vector.dot(normal); };
+                const V3d a = inPlane(V3d(surface.positions[surface.triangles[other][(c + 1) % 3]]) - p);
+                const V3d b = inPlane(V3d(surface.positions[surface.triangles[other][(c + 2) % 3]]) - p);
+                const V3d tangent = inPlane(V3d(along[other]));
                 const double length = tangent.length();
                 if (length > 1e-9)
                     sum += tangent * (std::atan2(a.cross(b).length(), a.dot(b)) / length);
@@ -80,18 +80,29 @@ TangentFrames::TangentFrames(const SurfaceMesh& surface)
         }
 }
 
-TangentFrames::Frame TangentFrames::at(const SurfacePoint& point, const V3d& normal) const {
+// Never along the normal; not unit.
+V3d TangentFrames::tangentAt(const SurfacePoint& point, const V3d& normal) const {
     const V3i& corner = corners_[point.triangle];
     const double u = point.u, v = point.v;
-    V3d tangent =
+    const V3d tangent =
         V3d(tangents_[corner[0]]) * (1.0 - u - v) + V3d(tangents_[corner[1]]) * u + V3d(tangents_[corner[2]]) * v;
+    if ((tangent - normal * tangent.dot(normal)).length() > 1e-3)
+        return tangent;
+    const V3d axis = std::abs(normal.x) < 0.9 ? V3d(1, 0, 0) : V3d(0, 1, 0);
+    return axis - normal * axis.dot(normal);
+}
+
+TangentFrames::Frame TangentFrames::at(const SurfacePoint& point, const V3d& normal) const {
+    V3d tangent = tangentAt(point, normal);
     tangent -= normal * tangent.dot(normal);
-    if (!(tangent.length() > 1e-6)) {
-        const V3d axis = std::abs(normal.x) < 0.9 ? V3d(1, 0, 0) : V3d(0, 1, 0);
-        tangent = axis - normal * axis.dot(normal);
-    }
     tangent.normalize();
     const V3d bitangent = normal.cross(tangent);
+    return {tangent, mirrored_[point.triangle] ? -bitangent : bitangent, normal};
+}
+
+TangentFrames::Frame TangentFrames::interpolatedAt(const SurfacePoint& point, const V3d& normal) const {
+    const V3d tangent = tangentAt(point, normal).normalized();
+    const V3d bitangent = normal.cross(tangent).normalized();
     return {tangent, mirrored_[point.triangle] ? -bitangent : bitangent, normal};
 }
 

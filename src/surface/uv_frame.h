@@ -20,18 +20,24 @@ UvDerivatives uvDerivativesOf(const SurfaceMesh& surface, int triangle);
 
 /// The tangents that renderers use (MikkTSpace's rule): at each vertex the mean of dP/du, by angle, over the triangles
 /// that share the vertex, its UV and their orientation, each turned into the plane of the normal first. On a finely diced
-/// limit surface they tend to the limit's own derivatives. \throws nothing; needs UVs
+/// limit surface they tend to the limit's own derivatives. Triangles without an area in the UVs do not count; where only
+/// such meet, any direction stands in. \throws nothing; needs UVs. Safe from any thread.
 class TangentFrames {
   public:
     explicit TangentFrames(const SurfaceMesh& surface);
 
     struct Frame {
-        Imath::V3d tangent, bitangent, normal; ///< unit, at right angles
+        Imath::V3d tangent, bitangent, normal; ///< unit; the bitangent on the side to which v runs
     };
-    /// At a point of a triangle; `normal` is the frame's, unit.
+    /// At a point of a triangle, all at right angles; `normal` is the frame's, unit.
     Frame at(const SurfacePoint& point, const Imath::V3d& normal) const;
+    /// With the tangent as renderers interpolate it between the vertices, where it is not quite at right angles to the
+    /// normal.
+    Frame interpolatedAt(const SurfacePoint& point, const Imath::V3d& normal) const;
 
   private:
+    Imath::V3d tangentAt(const SurfacePoint& point, const Imath::V3d& normal) const;
+
     std::vector<Imath::V3i> corners_;
     std::vector<Imath::V3f> tangents_;
     std::vector<std::uint8_t> mirrored_;

@@ -7,6 +7,7 @@
 #include "surface/limit_surface.h"
 #include "surface/mesh_file.h"
 #include "surface/mesh_repair.h"
+#include "surface/region_charts.h"
 #include "surface/shapes.h"
 
 #include <fmt/format.h>
@@ -111,6 +112,12 @@ void fitUvs(Mesh& mesh, const std::string& name, Console& console) {
     if (furthest > std::max(1e-4f, 2.f * inset))
         console.warning(fmt::format("UVs reach {:.2g} beyond {} and were moved to its border", furthest,
                                     several ? "their tile" : "the unit square"));
+}
+
+// Many triangles and nothing else.
+bool isScan(const Mesh& mesh) {
+    return mesh.faceSizes.size() >= 500 &&
+           std::all_of(mesh.faceSizes.begin(), mesh.faceSizes.end(), [](int size) { return size == 3; });
 }
 
 // The model becomes its piece in the box.
@@ -219,9 +226,15 @@ Model loadModel(const std::string& name, const Options& options, const VolumeSca
         throw Error(ExitCode::commandLine, "--context", "is for close-ups: there is no --region",
                     "add --region or --region-at");
     if (options.atlas || !model.mesh.hasUvs()) {
+        // A tile of a face each would leave a scan's triangles a few texels, and seams along every edge.
+        const bool charts = isScan(model.mesh);
         if (!options.atlas)
-            console.notice("the model has no UVs: each face gets a tile of its own");
-        makeFaceAtlas(model.mesh, options.resolution);
+            console.notice(charts ? "the model has no UVs: its triangles get charts by the way they face"
+                                  : "the model has no UVs: each face gets a tile of its own");
+        if (charts)
+            makeProjectedCharts(model.mesh, {0.0, 1.0, 0.0}, options.resolution);
+        else
+            makeFaceAtlas(model.mesh, options.resolution);
     }
 
     fitUvs(model.mesh, name, console);

@@ -90,7 +90,7 @@ void addModelOptions(CLI::App& app, Options& options) {
         ->check(oneOf({"auto", "holes", "sheet", "none"}))
         ->type_name("HOW")
         ->group(group);
-    app.add_flag("--atlas", options.atlas, "Replace the model's UVs by a tile for each face")->group(group);
+    app.add_flag("--atlas", options.atlas, "Replace the UVs: a tile for each face, charts for scans")->group(group);
 }
 
 void addVolumeOptions(CLI::App& app, Options& options) {
