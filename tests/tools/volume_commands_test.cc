@@ -1,5 +1,6 @@
 // The commands beside `run`: info, check, bake, render, probe, materials, make, contact-sheet.
 
+#include "base/hash.h"
 #include "program.h"
 
 #include <gmock/gmock.h>
@@ -7,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <memory>
 #include <sstream>
 
@@ -115,6 +118,26 @@ TEST_F(VolumeCommands, BakeGivesTheMapsOfTheRun) {
     EXPECT_EQ(other.exitCode, 4);
     EXPECT_THAT(other.err, HasSubstr("strip: is not the model that 'ball/ball.vdb' was made from ('sphere')"));
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "other"));
+}
+
+// A grid goes by another name; the file is sealed again, so that nothing else is wrong with it.
+TEST_F(VolumeCommands, AMissingGridIsNamedAndNothingIsBaked) {
+    std::string bytes = readFile(folder.path() / "ball/ball.vdb");
+    constexpr std::size_t sealBytes = 16;
+    const std::string name("\x08\0\0\0material", 12), other("\x08\0\0\0somewhat", 12);
+    int found = 0;
+    for (std::size_t at = bytes.find(name); at != std::string::npos; at = bytes.find(name, at + 1), ++found)
+        bytes.replace(at, name.size(), other);
+    ASSERT_GE(found, 1);
+    ContentHash hashed;
+    hashed.add(bytes.data(), bytes.size() - sealBytes);
+    const std::uint64_t digest = hashed.digest();
+    std::memcpy(bytes.data() + bytes.size() - sizeof digest, &digest, sizeof digest);
+    folder.file("ball/other.vdb", bytes);
+    const Outcome outcome = run({"bake", "ball/other.vdb", "sphere", "-o", "baked", "--resolution", "64"});
+    EXPECT_EQ(outcome.exitCode, 1) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("error: ball/other.vdb: has no grid 'material'"));
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "baked"));
 }
 
 // Two quads side by side, 1 cm each: the first fills the unit square, the second lies from one u to another.
