@@ -14,7 +14,6 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
-#include <optional>
 
 namespace patina {
 
@@ -34,6 +33,7 @@ constexpr int bandsHeld = 5;
 struct RowSums {
     std::size_t covered = 0, supersampled = 0, green = 0;
     double points = 0.0, unreadable = 0.0, foldsAsked = 0.0, folds = 0.0; // of folds: texels
+    double baseOffset = 0.0, baseOffset2 = 0.0;                          // of points
     float maxDisplacement = 0.f;
     V3d colour{0.0};
 };
@@ -43,9 +43,9 @@ struct RowSums {
 class TileBake {
   public:
     TileBake(const SurfaceWalk& walk, const TexelSampler& sampler, const TangentFrames& frames,
-             const VectorFrames* vectorFrames, const BakeOptions& options, const std::vector<std::uint8_t>& pointsAcross, ColourSpace space,
-             double heightUnits, TexelMap texels, BakeRows& rows)
-        : surface_(walk.surface()), sampler_(sampler), frames_(frames), vectorFrames_(vectorFrames), options_(options), across_(pointsAcross),
+             const BakeOptions& options, const std::vector<std::uint8_t>& pointsAcross, ColourSpace space, double heightUnits,
+             TexelMap texels, BakeRows& rows)
+        : surface_(walk.surface()), sampler_(sampler), frames_(frames), options_(options), across_(pointsAcross),
           space_(space), heightUnits_(heightUnits), texels_(std::move(texels)), rows_(rows), sums_(options.resolution),
           supersampled_(static_cast<std::size_t>(options.resolution) * rows.rows()) {}
 
@@ -122,14 +122,17 @@ class TileBake {
 
     // Texels beside a chart are read in the chart's frame.
     void putInSpace(const SurfacePoint& owner, TexelValues& values) const {
-        if (vectorFrames_)
-            values.vector = toSpace(options_.vectorSpace, vectorFrames_->at(owner), values.vector);
+        if (options_.vectorDisplacement && options_.vectorSpace != VectorSpace::object)
+            values.vector = toSpace(options_.vectorSpace, frames_.interpolatedAt(owner, normalAt(surface_, owner)),
+                                    values.vector);
     }
 
     void count(const TexelValues& values, RowSums& sums) const {
         ++sums.covered;
         sums.points += values.points;
         sums.unreadable += values.unreadable;
+        sums.baseOffset = std::max(sums.baseOffset, values.baseOffset);
+        sums.baseOffset2 += values.baseOffset2;
         const V3d xyz = xyzFromLinear(values.baseColour, space_);
         sums.colour += linearRec709FromXyz(xyz);
         sums.green += labFromXyz(xyz).y < -4.0;
@@ -163,8 +166,8 @@ class TileBake {
     }
 
     // The normal of the displaced surface P + h N, from its derivatives by u and v, in the frame of the tangents.
-    // \return whether the surface is turned over: beside the texel normals cross before they end, as in creases that are
-    // narrower than the layers, and the heights of neighbours lie in the wrong order.
+    // \return whether the heights say nothing: beside the texel normals cross before they end, as in creases that are
+    // narrower than the layers, and neighbours lie in the wrong order; or they end on different sheets.
     bool normalAtTexel(int y, int x, const SurfacePoint& shown, const SurfacePoint& owner) {
         const UvDerivatives uv = uvDerivativesOf(surface_, owner.triangle);
         V3d encoded(0.5, 0.5, 1.0);
@@ -185,7 +188,7 @@ class TileBake {
             if (uv.mirrored)
                 displaced = -displaced;
             const double length = displaced.length();
-            turned = displaced.dot(normal) < 0.0;
+            turned = displaced.dot(normal) < 0.0 || isWall(y, x, uv);
             if (length > 0.0 && displaced.dot(normal) > 0.0) {
                 displaced /= length;
                 const TangentFrames::Frame frame = frames_.at(owner, normal);
@@ -197,11 +200,23 @@ class TileBake {
         return turned;
     }
 
+    // Whether the height jumps to a neighbour: by four times their distance (76 degrees) and more than half a voxel, which
+    // nothing that the lattice holds as one sheet does.
+    bool isWall(int y, int x, const UvDerivatives& uv) const {
+        const double own = rows_.height(y, x), least = 0.5 * sampler_.voxelSize() * heightUnits_;
+        const auto jumps = [&](int ny, int nx, const V3d& along) {
+            const double width = along.length() / texels_.size * heightUnits_;
+            return isSet(ny, nx) && std::abs(rows_.height(ny, nx) - own) > std::max(least, 4.0 * width);
+        };
+        return jumps(y, x - 1, uv.du) || jumps(y, x + 1, uv.du) || jumps(y - 1, x, uv.dv) || jumps(y + 1, x, uv.dv);
+    }
+
+    bool isSet(int y, int x) const {
+        return y >= 0 && x >= 0 && y < texels_.size && x < texels_.size && rows_.isSet(y, x);
+    }
+
     // How the height changes over the width of the tile along a row or a column.
     double slopeAlong(int y, int x, int dy, int dx) const {
-        const auto isSet = [&](int ny, int nx) {
-            return ny >= 0 && nx >= 0 && ny < texels_.size && nx < texels_.size && rows_.isSet(ny, nx);
-        };
         const bool ahead = isSet(y + dy, x + dx), behind = isSet(y - dy, x - dx);
         const double after = rows_.height(ahead ? y + dy : y, ahead ? x + dx : x);
         const double before = rows_.height(behind ? y - dy : y, behind ? x - dx : x);
@@ -237,7 +252,6 @@ class TileBake {
     const SurfaceMesh& surface_;
     const TexelSampler& sampler_;
     const TangentFrames& frames_;
-    const VectorFrames* vectorFrames_; ///< null: vectors stay in object space
     const BakeOptions& options_;
     const std::vector<std::uint8_t>& across_;
     ColourSpace space_;
@@ -302,9 +316,6 @@ BakeSummary bakeInto(MapSink& sink, const LayerVolume& volume, const SurfaceMesh
     summary.tiles = uvTiles(surface);
     const SurfaceWalk walk(surface);
     const TangentFrames frames(surface);
-    std::optional<VectorFrames> vectorFrames;
-    if (options.vectorDisplacement && options.vectorSpace != VectorSpace::object)
-        vectorFrames.emplace(surface);
     const TexelSampler sampler(volume, walk, optics, options);
     std::vector<std::uint8_t> across(surface.triangles.size());
     tbb::parallel_for(std::size_t(0), across.size(), [&](std::size_t t) {
@@ -319,7 +330,7 @@ BakeSummary bakeInto(MapSink& sink, const LayerVolume& volume, const SurfaceMesh
     RowSums sums;
     std::size_t overlapping = 0;
     for (std::size_t i = 0; i < summary.tiles.size(); ++i) {
-        TileBake tile(walk, sampler, frames, vectorFrames ? &*vectorFrames : nullptr, options, across, space, heightUnits,
+        TileBake tile(walk, sampler, frames, options, across, space, heightUnits,
                       makeTexelMap(walk, options.resolution, options.gutter, summary.tiles[i]), rows);
         progress.checkpoint();
         std::vector<MapInfo> maps = rows.maps();
@@ -336,6 +347,8 @@ BakeSummary bakeInto(MapSink& sink, const LayerVolume& volume, const SurfaceMesh
             sums.green += row.green;
             sums.points += row.points;
             sums.unreadable += row.unreadable;
+            sums.baseOffset = std::max(sums.baseOffset, row.baseOffset);
+            sums.baseOffset2 += row.baseOffset2;
             sums.foldsAsked += row.foldsAsked;
             sums.folds += row.folds;
             sums.colour += row.colour;
@@ -351,6 +364,8 @@ BakeSummary bakeInto(MapSink& sink, const LayerVolume& volume, const SurfaceMesh
                               (static_cast<double>(options.resolution) * options.resolution *
                                static_cast<double>(std::max<std::size_t>(1, summary.tiles.size())));
     summary.unreadableFraction = sums.unreadable / std::max(1.0, sums.points);
+    summary.voxelisationRms = std::sqrt(sums.baseOffset2 / std::max(1.0, sums.points));
+    summary.voxelisationMax = sums.baseOffset;
     summary.supersampledFraction = static_cast<double>(sums.supersampled) / texels;
     summary.greenFraction = static_cast<double>(sums.green) / texels;
     summary.foldFraction = sums.folds / std::max(1.0, sums.foldsAsked);

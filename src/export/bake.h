@@ -20,7 +20,7 @@ struct BakeOptions {
     bool keepExaggeration = false;   ///< displacement as drawn in the volume instead of real
     double displacementUnits = 1.0;  ///< units of the maps' displacement per scene unit of the volume
     bool materialId = false;         ///< also bake material_id
-    bool foldMask = false;           ///< also bake fold_mask: 1 where a height map cannot follow
+    bool foldMask = false;           ///< also bake fold_mask: 1 where a height map cannot follow (docs/export.md)
     bool vectorDisplacement = false; ///< also bake vector_displacement: scene units
     bool fields = false;             ///< also bake field_NAME of every field that the volume holds
 
@@ -36,8 +36,11 @@ struct BakeSummary {
     double unreadableFraction = 0.0; ///< of those, where no base crossed the normal (left at zero)
     double supersampledFraction = 0.0; ///< of those, read at more than one point
     float maxDisplacement = 0.f;     ///< max |h|, as exported
-    double foldFraction = 0.0;       ///< of those: the outermost interface folds over (OuterSurface::foldsOver), or
-                                     ///< normals cross before they reach it, as in creases narrower than the layers
+    double foldFraction = 0.0;       ///< of those, under the fold mask: the outermost interface folds over
+                                     ///< (OuterSurface::foldsOver), the normal does not come to it (misses), normals
+                                     ///< cross before they do, or the height jumps between neighbours
+    double voxelisationRms = 0.0, voxelisationMax = 0.0; ///< of the voxels' base from the surface along the normal,
+                                                         ///< voxels: no displacement holds it
     double overlapFraction = 0.0;    ///< of those, in charts of two faces; few (overlapTolerance)
     std::pair<int, int> overlappingFaces{-1, -1}; ///< two of them, from 0
     Imath::V3d meanColour{0.0};      ///< linear Rec.709 of the flattened base colour, over all charts

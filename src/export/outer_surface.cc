@@ -52,6 +52,12 @@ bool OuterSurface::foldsOver(const Imath::V3d& floor, const Imath::V3d& normal) 
     return false;
 }
 
+bool OuterSurface::misses(const Imath::V3d& foot, const Imath::V3d& end) const {
+    const Nest& nest = *nest_;
+    const double start = std::abs(nest.read(nest.base, foot / nest.voxelSize));
+    return std::abs(nest.read(nest.last, end / nest.voxelSize)) > start + 0.1;
+}
+
 std::optional<Imath::V3d> OuterSurface::above(const Imath::V3d& floor) const {
     const Nest& nest = *nest_;
     if (nest.last == 0)

@@ -21,6 +21,12 @@ class OuterSurface {
     /// outward, unit
     bool foldsOver(const Imath::V3d& floor, const Imath::V3d& normal) const;
 
+    /// Whether a height ends beside the outermost interface: the normal comes into metal opposite before it is out of the
+    /// layers (a crease filled to the brim), or leaves them where no base is read. By more than a tenth of a voxel, beyond
+    /// what lies between `foot` and the base. \param foot  where the height starts, on the base or near it, scene units
+    /// \param end  where it ends
+    bool misses(const Imath::V3d& foot, const Imath::V3d& end) const;
+
     /// The point of the outermost interface that belongs to a point of the metal: the end of the line along which
     /// phi_0 / (phi_0 - phi_n) grows fastest. These lines do not cross, start at right angles to the metal, arrive so
     /// at the interface, and spread into overhangs; closed pores are passed through. nullopt where the line cannot be

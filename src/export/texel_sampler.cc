@@ -61,10 +61,16 @@ void TexelSampler::readPoint(const SurfacePoint& point, bool askFolds, bool want
     }
     out.coverage[visible] += 1.0;
     out.height += reading.height;
-    if (askFolds && reading.found && !reading.projected) {
-        const V3d floor = position + normal * (reading.baseOffset + reading.metalHeight);
-        out.folds += outer_.foldsOver(floor, normal);
-        ++out.foldsAsked;
+    const bool crosses = reading.found && !reading.projected;
+    if (askFolds) {
+        const V3d foot = crosses ? position + normal * reading.baseOffset : position;
+        out.folds += outer_.misses(foot, foot + normal * reading.height) ||
+                     (crosses && outer_.foldsOver(foot + normal * reading.metalHeight, normal));
+    }
+    if (crosses) {
+        const double offset = reading.baseOffset / voxelSize_;
+        out.baseOffset2 += offset * offset;
+        out.baseOffset = std::max(out.baseOffset, std::abs(offset));
     }
     if (vectors_)
         out.vector += vectorOf(outer_, reading, position, normal, voxelSize_);
@@ -91,7 +97,8 @@ void TexelSampler::read(const SurfacePoint& middle, int across, bool askFolds, S
                         TexelValues& out) const {
     scratch.thickness.resize(std::max(layers_, 1));
     scratch.thicknessUm.resize(std::max(layers_, 1));
-    out.points = out.unreadable = out.foldsAsked = out.folds = out.visible = 0;
+    out.points = out.unreadable = out.folds = out.visible = 0;
+    out.baseOffset = out.baseOffset2 = 0.0;
     out.height = out.metallic = 0.0;
     out.vector = out.diffuse = out.baseColour = V3d(0.0);
     out.thicknessUm.assign(layers_, 0.0);

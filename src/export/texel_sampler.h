@@ -15,7 +15,8 @@ namespace patina {
 
 /// Means over a texel's points.
 struct TexelValues {
-    int points = 0, unreadable = 0, foldsAsked = 0, folds = 0;
+    int points = 0, unreadable = 0, folds = 0;
+    double baseOffset = 0.0, baseOffset2 = 0.0; ///< of the voxels' base from the surface, voxels: largest, sum of squares
     int visible = 0; ///< the outermost layer at most points, 0: the metal
     double height = 0.0; ///< scene units of the volume, as drawn
     Imath::V3d vector{0.0};
@@ -44,6 +45,8 @@ class TexelSampler {
         std::vector<double> thickness;
         std::vector<float> thicknessUm;
     };
+
+    double voxelSize() const { return voxelSize_; } ///< scene units
 
     /// Points along each side of a texel of this triangle: 1 where it is no wider than a voxel, 4 at most.
     int pointsAcross(int triangle) const;

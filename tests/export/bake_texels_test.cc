@@ -186,7 +186,7 @@ TEST_F(BakeTexels, ATroughNarrowerThanItsCoatIsAFold) {
     EXPECT_EQ(at(maps, "fold_mask", 112, 64), 0.0);
     // At most the trough, 5 pi of 64.
     EXPECT_GT(maps.summary.foldFraction, 0.1);
-    EXPECT_LT(maps.summary.foldFraction, 5.0 * M_PI / side + 0.02);
+    EXPECT_LT(maps.summary.foldFraction, 5.0 * M_PI / side + 0.03);
 }
 
 TEST_F(BakeTexels, SeveralTilesAreBakedEachByItself) {

@@ -3,15 +3,19 @@
 
 #include "export/bake.h"
 #include "surface/ray_scene.h"
+#include "surface/uv_frame.h"
 #include "volume/nest_sampler.h"
+#include "volume/stack_probe.h"
 
 #include <openvdb/tools/VolumeToMesh.h>
 
 #include <tbb/parallel_for.h>
 
+#include <Imath/ImathBox.h>
+
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <limits>
 #include <vector>
 
 namespace patina::test {
@@ -20,11 +24,15 @@ namespace patina::test {
 struct DistanceFigures {
     std::size_t points = 0, masked = 0;
     double rms = 0.0, p999 = 0.0, max = 0.0;
+
+    double maskedShare() const { return double(masked) / double(std::max<std::size_t>(1, masked + points)); }
 };
 
-/// Both directions: points of the displaced mesh to the interface, and of the interface to the displaced mesh.
+/// Both directions: points of the displaced mesh to the interface, and of the interface to the displaced mesh. The voxels'
+/// base lies beside the mesh where the lattice cuts an edge, and displacement, a difference from the base, does not hold
+/// that: the mesh is first moved on to the base, along the normal. `meshAsItIs` is without.
 struct DisplacedDistance {
-    DistanceFigures meshToVolume, volumeToMesh;
+    DistanceFigures meshToVolume, volumeToMesh, meshAsItIs;
 };
 
 inline DistanceFigures figuresOf(std::vector<float>& distances, std::size_t masked) {
@@ -61,41 +69,43 @@ inline double readMap(const MapImage& map, const Imath::V2d& uv, int channel = 0
 /// \param dice    every triangle of the surface is cut into dice² of them
 /// \param heights displacement (1 channel) or vector displacement (3) at the volume's scale
 /// \param space   of vector displacement
-/// \param folds   fold mask: what lies under it is left out on both sides, and so is what displacement takes nearer to
-///                another part of the metal than half the height
+/// \param folds   fold mask: what lies under it is left out on both sides, and so are triangles without an area in the UVs
+/// \param inside  of the interface, only points in this box are asked; scene units
 inline DisplacedDistance measureDisplaced(const LayerVolume& volume, const SurfaceMesh& surface,
                                           const MapImage& heights, const MapImage& folds, int dice,
-                                          VectorSpace space = VectorSpace::object) {
+                                          VectorSpace space = VectorSpace::object,
+                                          const Imath::Box3d& inside = {Imath::V3d(-1e300), Imath::V3d(1e300)}) {
     const double voxel = volume.scale().voxelSize;
     // Corners of the dice, triangle by triangle.
     const int perTriangle = (dice + 1) * (dice + 2) / 2;
     const std::size_t triangles = surface.triangles.size();
-    std::vector<Imath::V3f> positions(triangles * perTriangle);
+    std::vector<Imath::V3f> positions(triangles * perTriangle), asItIs(positions.size());
     std::vector<char> folded(positions.size());
     std::vector<Imath::V3i> faces(triangles * dice * dice);
     const NestSampler sampler(volume.grids());
-    std::optional<VectorFrames> frames;
-    if (heights.channels == 3 && space != VectorSpace::object)
-        frames.emplace(surface);
+    const StackProbe probe(volume);
+    const TangentFrames frames(surface);
     tbb::parallel_for(std::size_t(0), triangles, [&](std::size_t t) {
         std::size_t at = t * perTriangle;
+        const bool shown = uvDerivativesOf(surface, static_cast<int>(t)).valid;
+        std::vector<double> thickness(std::max(volume.layerCount(), 1));
         for (int j = 0; j <= dice; ++j)
             for (int i = 0; i + j <= dice; ++i, ++at) {
                 const SurfacePoint point{static_cast<int>(t), float(i) / dice, float(j) / dice};
                 const Imath::V2d uv = uvAt(surface, point);
+                const Imath::V3d here = positionAt(surface, point), normal = normalAt(surface, point);
                 Imath::V3d shift;
                 if (heights.channels == 3)
                     shift = {readMap(heights, uv, 0), readMap(heights, uv, 1), readMap(heights, uv, 2)};
                 else
-                    shift = normalAt(surface, point) * readMap(heights, uv);
-                if (frames)
-                    shift = fromSpace(space, frames->at(point), shift);
-                positions[at] = Imath::V3f(positionAt(surface, point) + shift);
-                // Where parts of the model have grown together, the normal ends at the metal opposite, deep inside.
-                const NestCell cell = sampler.locate(Imath::V3d(positions[at]) / voxel);
-                const bool buried =
-                    shift.length() > voxel && sampler.value(sampler.reference(), cell) < 0.5 * shift.length();
-                folded[at] = buried || readMap(folds, uv) > 0.0;
+                    shift = normal * readMap(heights, uv);
+                if (heights.channels == 3)
+                    shift = fromSpace(space, frames.interpolatedAt(point, normal), shift);
+                const auto reading = probe.read(here, normal, thickness.data());
+                const double offset = reading.found && !reading.projected ? reading.baseOffset : 0.0;
+                asItIs[at] = Imath::V3f(here + shift);
+                positions[at] = Imath::V3f(here + shift + normal * offset);
+                folded[at] = !shown || readMap(folds, uv) > 0.0;
             }
         const auto corner = [&](int i, int j) {
             return static_cast<int>(t * perTriangle) + j * (dice + 1) - j * (j - 1) / 2 + i;
@@ -111,29 +121,33 @@ inline DisplacedDistance measureDisplaced(const LayerVolume& volume, const Surfa
 
     DisplacedDistance result;
     const int last = volume.layerCount();
-    std::vector<float> distances(faces.size());
-    tbb::parallel_for(std::size_t(0), faces.size(), [&](std::size_t f) {
-        const Imath::V3i& face = faces[f];
-        if (folded[face.x] || folded[face.y] || folded[face.z]) {
-            distances[f] = -1.f;
-            return;
-        }
-        const Imath::V3d middle =
-            (Imath::V3d(positions[face.x]) + Imath::V3d(positions[face.y]) + Imath::V3d(positions[face.z])) /
-            (3.0 * voxel);
-        Imath::V3d gradient;
-        const double phi = sampler.valueAndGradient(last, sampler.locate(middle), gradient);
-        // The interface's slope is not quite one: to first order its distance is phi over the slope.
-        distances[f] = static_cast<float>(std::abs(phi) / std::max(gradient.length(), 0.5 * voxel));
-    });
+    std::vector<float> distances;
     const auto unmasked = [](std::vector<float>& values) {
         const auto end = std::remove_if(values.begin(), values.end(), [](float d) { return d < 0.f; });
         const auto masked = static_cast<std::size_t>(values.end() - end);
         values.erase(end, values.end());
         return masked;
     };
-    std::size_t masked = unmasked(distances);
-    result.meshToVolume = figuresOf(distances, masked);
+    const auto toVolume = [&](const std::vector<Imath::V3f>& from) {
+        distances.resize(faces.size());
+        tbb::parallel_for(std::size_t(0), faces.size(), [&](std::size_t f) {
+            const Imath::V3i& face = faces[f];
+            if (folded[face.x] || folded[face.y] || folded[face.z]) {
+                distances[f] = -1.f;
+                return;
+            }
+            const Imath::V3d middle =
+                (Imath::V3d(from[face.x]) + Imath::V3d(from[face.y]) + Imath::V3d(from[face.z])) / (3.0 * voxel);
+            Imath::V3d gradient;
+            const double phi = sampler.valueAndGradient(last, sampler.locate(middle), gradient);
+            // The interface's slope is not quite one: to first order its distance is phi over the slope.
+            distances[f] = static_cast<float>(std::abs(phi) / std::max(gradient.length(), 0.5 * voxel));
+        });
+        const std::size_t masked = unmasked(distances);
+        return figuresOf(distances, masked);
+    };
+    result.meshToVolume = toVolume(positions);
+    result.meshAsItIs = toVolume(asItIs);
 
     std::vector<openvdb::Vec3s> points;
     std::vector<openvdb::Vec4I> quads;
@@ -142,19 +156,26 @@ inline DisplacedDistance measureDisplaced(const LayerVolume& volume, const Surfa
     distances.assign(points.size(), 0.f);
     tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t i) {
         // The mesher puts its points inside the cells; onto the crossing along the gradient.
-        Imath::V3d point(points[i].x(), points[i].y(), points[i].z());
+        const openvdb::Vec3d at = volume.grids().surface().worldToIndex(points[i]);
+        Imath::V3d point = Imath::V3d(at.x(), at.y(), at.z()) * voxel;
         for (int step = 0; step < 3; ++step) {
             Imath::V3d gradient;
             const double phi = sampler.valueAndGradient(last, sampler.locate(point / voxel), gradient);
             if (gradient.length2() > 0.0)
                 point -= gradient * (phi / gradient.length2()) * voxel;
         }
+        if (!inside.intersects(point)) {
+            distances[i] = std::numeric_limits<float>::quiet_NaN();
+            return;
+        }
         const auto hit = scene.closest(Imath::V3f(point), static_cast<float>(40.0 * voxel));
         const Imath::V3i* face = hit ? &faces[hit->point.triangle] : nullptr;
         const bool left = !hit || folded[face->x] || folded[face->y] || folded[face->z];
         distances[i] = left ? -1.f : static_cast<float>(hit->distance / voxel);
     });
-    masked = unmasked(distances);
+    distances.erase(std::remove_if(distances.begin(), distances.end(), [](float d) { return std::isnan(d); }),
+                    distances.end());
+    const std::size_t masked = unmasked(distances);
     result.volumeToMesh = figuresOf(distances, masked);
     return result;
 }

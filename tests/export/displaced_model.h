@@ -43,9 +43,10 @@ inline Measured measure(Mesh mesh, int voxels, int resolution, int dice, bool at
     limit.targetEdge = 1.5 * scale.voxelSize;
     const auto piece = makePiece(makeLimitSurface(mesh, limit), scale, 12.0);
     auto work = piece->work();
-    // Hills of 1/8 of the model: 16 voxels and more, so that the lattice holds them.
+    // Hills of 1/8 of the model, but 16 voxels and more: less, and the coat is thicker than they are wide.
+    const double hill = std::max(side / 8.0, 16.0 * scale.voxelSize);
     const FunctionMap hills([&](const MapPoint& point) {
-        const Imath::V3d p = point.position * (16.0 * M_PI / side);
+        const Imath::V3d p = point.position * (2.0 * M_PI / hill);
         return 0.75 + 0.25 * std::sin(p.x) * std::sin(p.y + 1.0) * std::sin(p.z + 2.0);
     });
     coat(work, "cuprite_2", 8.0, &hills, piece->progress);
@@ -67,7 +68,7 @@ inline Measured measure(Mesh mesh, int voxels, int resolution, int dice, bool at
     std::fill(zero.floats.begin(), zero.floats.end(), 0.f);
     measured.undisplaced = measureDisplaced(*piece->volume, piece->surface, zero, *maps.find("fold_mask"), 1);
     if (!vectors) {
-        measured.seams = seamJumps(piece->surface, *maps.find("displacement"), 3);
+        measured.seams = seamJumps(piece->surface, *maps.find("displacement"), *maps.find("fold_mask"), 3);
         for (double& jump : measured.seams)
             jump /= scale.voxelSize;
         if (!measured.seams.empty())
@@ -80,10 +81,22 @@ inline Measured measure(Mesh mesh, int voxels, int resolution, int dice, bool at
                     figures.masked, figures.rms, figures.p999, figures.max);
     };
     print("displaced mesh to volume", measured.displaced.meshToVolume);
+    print("  with voxelisation     ", measured.displaced.meshAsItIs);
     print("volume to displaced mesh", measured.displaced.volumeToMesh);
     print("without displacement    ", measured.undisplaced.meshToVolume);
-    std::printf("folds: %.4f %%\n", measured.foldFraction * 100.0);
+    std::printf("folds: %.4f %%; voxelisation: rms %.4f, max %.4f voxel\n", measured.foldFraction * 100.0,
+                maps.summary.voxelisationRms, maps.summary.voxelisationMax);
     return measured;
+}
+
+// What is asked of it where the layers are 4 voxels and more.
+inline void expectTheVoxelSurface(const Measured& measured, std::size_t fewestPoints) {
+    for (const auto& figures : {measured.displaced.meshToVolume, measured.displaced.volumeToMesh}) {
+        EXPECT_GT(figures.points, fewestPoints);
+        EXPECT_LT(figures.rms, 0.05);
+        EXPECT_LT(figures.p999, 0.25);
+        EXPECT_LT(figures.max, 0.5);
+    }
 }
 
 // Zero displacement must be caught: the mesh is then a coat away from the interface.

@@ -11,12 +11,7 @@ namespace {
 TEST(DisplacementDistance, TheDisplacedSphereIsTheVoxelSurface) {
     const test::Measured measured = test::measure(makeShape("sphere"), 96, 1024, 2, false);
     test::expectControl(measured);
-    for (const auto& figures : {measured.displaced.meshToVolume, measured.displaced.volumeToMesh}) {
-        EXPECT_GT(figures.points, 10000u);
-        EXPECT_LT(figures.rms, 0.05);
-        EXPECT_LT(figures.p999, 0.25);
-        EXPECT_LT(figures.max, 0.5);
-    }
+    test::expectTheVoxelSurface(measured, 10000);
     EXPECT_LT(measured.foldFraction, 1e-3);
     ASSERT_GT(measured.seams.size(), 100u);
     EXPECT_LT(measured.seams.back(), 0.02);
@@ -26,13 +21,16 @@ TEST(DisplacementDistance, TheDisplacedCageOfSpotIsTheVoxelSurface) {
     const test::Measured measured =
         test::measure(readMesh(PATINA_SOURCE_DIR "/data/meshes/spot_control_mesh.obj"), 128, 1024, 2, true);
     test::expectControl(measured);
-    // Measured: 0.031 and 0.32 from the mesh, 0.028 and 0.23 to it; the largest, 1.2 voxels, where horns and ears
-    // grow together and the interface has an edge that no texel hits.
+    // A coat this thick on a model this small: a fifth is folds, and texels of half a voxel miss an edge of the interface
+    // by a voxel in places (measured: 0.96). As fine as maps get: displacement_distance_slow_test.cc.
     for (const auto& figures : {measured.displaced.meshToVolume, measured.displaced.volumeToMesh}) {
         EXPECT_GT(figures.points, 10000u);
         EXPECT_LT(figures.rms, 0.05);
-        EXPECT_LT(figures.p999, 0.45);
+        EXPECT_LT(figures.p999, 0.25);
+        EXPECT_LT(figures.max, 1.0);
     }
+    EXPECT_LT(measured.displaced.meshToVolume.maskedShare(), 0.22);
+    EXPECT_LT(measured.displaced.volumeToMesh.maskedShare(), 0.05);
 }
 
 } // namespace

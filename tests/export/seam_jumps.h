@@ -8,8 +8,9 @@
 namespace patina::test {
 
 /// |difference| of the bilinear reads from both sides, at `perEdge` points of every edge of the surface whose triangles
-/// do not meet in the UVs; in the map's units, sorted.
-inline std::vector<double> seamJumps(const SurfaceMesh& surface, const MapImage& map, int perEdge) {
+/// do not meet in the UVs, but where the fold mask lies on either side; in the map's units, sorted.
+inline std::vector<double> seamJumps(const SurfaceMesh& surface, const MapImage& map, const MapImage& folds,
+                                     int perEdge) {
     const SurfaceWalk walk(surface);
     std::vector<double> jumps;
     const auto uv = [&](int triangle, int corner) {
@@ -25,7 +26,9 @@ inline std::vector<double> seamJumps(const SurfaceMesh& surface, const MapImage&
                 continue;
             for (int i = 0; i < perEdge; ++i) {
                 const double s = (i + 0.5) / perEdge;
-                jumps.push_back(std::abs(readMap(map, a0 + (a1 - a0) * s) - readMap(map, b0 + (b1 - b0) * s)));
+                const Imath::V2d here = a0 + (a1 - a0) * s, there = b0 + (b1 - b0) * s;
+                if (readMap(folds, here) == 0.0 && readMap(folds, there) == 0.0)
+                    jumps.push_back(std::abs(readMap(map, here) - readMap(map, there)));
             }
         }
     std::sort(jumps.begin(), jumps.end());

@@ -146,6 +146,8 @@ void addMapsToReport(Json& report, const BakeSummary& summary) {
                       {"texels", summary.texels},
                       {"unreadable_fraction", summary.unreadableFraction},
                       {"fold_fraction", summary.foldFraction},
+                      {"voxelisation_rms_voxels", summary.voxelisationRms},
+                      {"voxelisation_max_voxels", summary.voxelisationMax},
                       {"supersampled_fraction", summary.supersampledFraction},
                       {"overlapping_fraction", summary.overlapFraction},
                       {"max_displacement_units", summary.maxDisplacement},
