@@ -32,9 +32,11 @@ struct Searchers {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
-// A film counts where it is thicker than what is ignored, if it is connected (block by block) to one that is thicker
-// than this (voxels): along sharp edges, which the voxels only know to some hundredths, there are films of nothing.
+// A film beside a sharp convex edge counts if it is connected (block by block) to one elsewhere, or to one that is thicker
+// than this (voxels): along such edges, which the voxels only know to some hundredths, there are films of nothing.
 constexpr float surelyFilm = 0.12f;
+// What a film counts at least where the balls do not touch.
+constexpr float faintest = 1e-6f;
 
 // Takes back what is covered in blocks from which no way through such blocks leads to a sure film.
 void dropFaintFilms(const PointBlocks& points, const std::vector<float>& thickest, std::vector<std::uint8_t>& covered) {
@@ -62,13 +64,53 @@ void dropFaintFilms(const PointBlocks& points, const std::vector<float>& thickes
                       std::uint8_t(0));
 }
 
-// For every seed: whether the closing lies more than `ignore` voxels above it.
+// The marked seeds and those in the cells around them.
+std::vector<std::uint8_t> withNeighbours(const PointBlocks& points, const std::vector<std::uint8_t>& marks) {
+    std::vector<std::array<std::uint64_t, 8>> cells(points.blocks.size());
+    const auto cellOf = [&](std::uint32_t s) {
+        const auto at = [](float v) { return std::clamp(int(std::floor(v)), 0, 7); };
+        return openvdb::Coord(at(points.x[s]), at(points.y[s]), at(points.z[s]));
+    };
+    for (std::size_t b = 0; b < cells.size(); ++b) {
+        cells[b].fill(0);
+        for (std::uint32_t s = points.blocks[b].begin; s < points.blocks[b].end; ++s)
+            if (marks[s]) {
+                const openvdb::Coord c = cellOf(s);
+                cells[b][c.x()] |= std::uint64_t(1) << (8 * c.y() + c.z());
+            }
+    }
+    std::vector<std::uint8_t> marked = marks;
+    tbb::parallel_for(std::size_t(0), cells.size(), [&](std::size_t b) {
+        const openvdb::Coord origin = points.blocks[b].block << 3;
+        for (std::uint32_t s = points.blocks[b].begin; s < points.blocks[b].end; ++s)
+            for (int n = 0; n < 27 && !marked[s]; ++n) {
+                const openvdb::Coord c = origin + cellOf(s).offsetBy(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1);
+                const std::int32_t number = points.lattice.at(c >> 3);
+                if (number >= 0)
+                    marked[s] = cells[number][c.x() & 7] >> (8 * (c.y() & 7) + (c.z() & 7)) & 1;
+            }
+    });
+    return marked;
+}
+
+// Seeds within three cells of a sharp convex edge.
+std::vector<std::uint8_t> besideEdges(const SurfaceSeeds& seeds) {
+    std::vector<std::uint8_t> sharp(seeds.patches.size());
+    for (std::size_t s = 0; s < sharp.size(); ++s) {
+        const SurfacePatch& patch = seeds.patches[s];
+        sharp[s] = patch.crease ||
+                   (patch.bentness() > 0.2f && patch.shape[0] + patch.shape[3] + patch.shape[5] > 0.f);
+    }
+    return withNeighbours(seeds.points, withNeighbours(seeds.points, withNeighbours(seeds.points, sharp)));
+}
+
+// For every seed: whether the closing lies above it.
 std::vector<std::uint8_t> coveredSeeds(const DistanceTransform& surface, const ClosingBalls& balls,
-                                       const NearestPoints& nearestBall, float radius, float ignore,
-                                       Progress& progress) {
+                                       const NearestPoints& nearestBall, float radius, Progress& progress) {
     const PointBlocks& points = surface.seeds().points;
     std::vector<std::uint8_t> covered(points.size(), 0);
     std::vector<float> thickest(points.blocks.size(), 0.f);
+    const std::vector<std::uint8_t> doubtful = besideEdges(surface.seeds());
     tbb::enumerable_thread_specific<Searchers> scratch;
     tbb::parallel_for(std::size_t(0), points.blocks.size(), [&](std::size_t b) {
         if (progress.cancelled())
@@ -111,13 +153,13 @@ std::vector<std::uint8_t> coveredSeeds(const DistanceTransform& surface, const C
                     }
                 }
                 const float film = centre < 0 ? 8.f : balls.distance(block.block, x, centre) - radius;
-                covered[s] = film > ignore;
                 // A seed on an edge may lie on a chord below it: what is surely a film is so on the faces beside it
                 // too.
-                if (covered[s])
-                    thickest[b] = std::max(thickest[b], surface.seeds().patches[s].bentness() > 0.3f
-                                                            ? std::min(film, 0.5f * surelyFilm)
-                                                            : film);
+                const bool bent = surface.seeds().patches[s].bentness() > 0.3f;
+                thickest[b] = std::max({thickest[b], faintest,
+                                        !doubtful[s] ? 2.f * surelyFilm
+                                        : bent       ? std::min(film, 0.5f * surelyFilm)
+                                                     : film});
             }
     });
     progress.checkpoint();
@@ -169,8 +211,8 @@ Closing closeInterface(LayerVolume& volume, int k, const ClosingOptions& options
     NestGrids& grids = volume.grids();
     const double voxelSize = volume.scale().voxelSize;
     const auto radius = static_cast<float>(options.radius / voxelSize),
-               ignore = static_cast<float>(options.ignoreVoxels);
-    const auto margin = static_cast<float>(options.marginVoxels);
+               margin = static_cast<float>(options.marginVoxels);
+    const float leastFilm = contactTolerance * contactTolerance / (2.f * radius);
     const auto source = [&]() -> const openvdb::FloatGrid& {
         return k < 0 ? *grids.base : k == 0 ? grids.floor() : *grids.interfaces[k - 1];
     };
@@ -182,12 +224,14 @@ Closing closeInterface(LayerVolume& volume, int k, const ClosingOptions& options
         progress.checkpoint();
         const ClosingBalls balls(surface, radius, options.global, progress);
         const NearestPoints nearestBall(balls.centres());
-        std::vector<std::uint8_t> covered = coveredSeeds(surface, balls, nearestBall, radius, ignore, progress);
+        std::vector<std::uint8_t> covered = coveredSeeds(surface, balls, nearestBall, radius, progress);
+        // A film's voxel is nearer than r to the surface, at a seed that the closing covers or beside one.
+        const PointBlocks& points = surface.seeds().points;
+        // Between a seed that the balls touch and one that they do not lies the closing's rim: each voxel there is asked
+        // for itself.
+        covered = withNeighbours(points, covered);
         if (options.openAirOnly)
             dropClosedAir(surface, OpenAir(volume), covered);
-
-        // A film's voxel is nearer than r to the surface, at a seed that the closing covers.
-        const PointBlocks& points = surface.seeds().points;
         openvdb::CoordBBox box = points.lattice.box();
         const int reach = static_cast<int>(std::ceil((radius + margin) / 8.f));
         box.expand(reach);
@@ -254,14 +298,19 @@ Closing closeInterface(LayerVolume& volume, int k, const ClosingOptions& options
                     continue; // in the air, far above the film
                 const Imath::V3f x(float(pos >> 6), float((pos >> 3) & 7), float(pos & 7));
                 const bool isActive = active[pos >> 6] & bit;
-                const float here = isActive ? leaf->buffer().data()[pos] / static_cast<float>(voxelSize) : infinite;
-                const auto isAir = [&](float level) { return isActive ? here - level <= ignore : level > margin; };
-                // The ball that is placed comes at least as near as the one found.
-                if (centre >= 0 && isAir(radius - (balls.centres().from(block, centre) - x).length()))
+                if (isActive && balls.touches(block, surface.seeds().pointUnder(block, x, search.seeds.point[pos])))
                     continue;
-                // What no ball comes near is filled.
-                const float level = centre < 0 ? -radius - 8.f : radius - balls.distance(block, x, centre);
-                if (isAir(level))
+                const float here = isActive ? leaf->buffer().data()[pos] / static_cast<float>(voxelSize) : infinite;
+                // The ball that is placed comes at least as near as the one found.
+                if (!isActive && centre >= 0 &&
+                    radius - (balls.centres().from(block, centre) - x).length() > margin)
+                    continue;
+                // What no ball comes near is filled. Where the ball at the point under x would stand in the surface by
+                // more than the tolerance t, those that fit stand aside by t at least, so that over a flat place the
+                // film is no thinner than t² / 2r, which rounding would lose.
+                const float level = centre < 0 ? -radius - 8.f
+                                               : std::min(radius - balls.distance(block, x, centre), here - leastFilm);
+                if (!isActive && level > margin)
                     continue;
                 film->level[pos] = level;
                 if (!isActive)

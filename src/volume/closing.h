@@ -13,12 +13,14 @@ struct ClosingOptions {
     bool global = false;        ///< only balls that can come from outside
     bool openAirOnly = false;   ///< nothing where only closed air is near the present surface (OpenAir)
     double marginVoxels = 3.0;  ///< the band is grown to hold this much above the closed surface
-    double ignoreVoxels = 0.02; ///< films thinner than this are no change
 };
 
 struct Closing {
     /// min(phi_k, closed phi_k), scene units, in the order of the base's leaves and active voxels (as they are when the
-    /// call returns). Where the ball touches phi_k itself these are phi_k's own bits.
+    /// call returns). Where the ball touches phi_k at the foot of a voxel (ClosingBalls::touches) these are phi_k's own
+    /// bits, elsewhere less by at least t² / 2r, t = contactTolerance. So in a voxel by the surface the level is left
+    /// alone exactly where the largest tangent sphere at its foot is no smaller than the ball (accessibleRadii()).
+    /// Films that are nowhere thicker than a tenth of a voxel or so, such as false ones along sharp edges, are dropped.
     std::vector<float> level;
     bool changed = false;  ///< whether the closing differs from phi_k anywhere
     bool grewBand = false; ///< the band was grown to hold it: the binding must be bound anew

@@ -28,7 +28,7 @@ bool ClosingBalls::Patches::add(std::int32_t s) {
 }
 
 ClosingBalls::ClosingBalls(const DistanceTransform& surface, double radius, bool fromOutside, Progress& progress)
-    : surface_(surface), radius_(static_cast<float>(radius)), fromOutside_(fromOutside) {
+    : surface_(surface), contact_(surface.seeds()), radius_(static_cast<float>(radius)), fromOutside_(fromOutside) {
     findShell(progress);
     if (fromOutside)
         keepReachable();
@@ -183,20 +183,15 @@ float ClosingBalls::distance(const openvdb::Coord& block, const Imath::V3f& x, s
 
 bool ClosingBalls::touches(std::int32_t seed) const {
     const PointBlocks& points = surface_.seeds().points;
-    const openvdb::Coord& block = points.blocks[points.blockOf[seed]].block;
-    const Imath::V3f s(points.x[seed], points.y[seed], points.z[seed]);
-    const Imath::V3f centre = s + surface_.seeds().patches[seed].normal * radius_;
-    const openvdb::Coord cell(8 * block.x() + int(std::floor(centre.x)), 8 * block.y() + int(std::floor(centre.y)),
-                              8 * block.z() + int(std::floor(centre.z)));
-    Patches patches;
-    for (int n = 0; n < 8; ++n) {
-        const openvdb::Coord corner = cell.offsetBy(n >> 2, (n >> 1) & 1, n & 1);
-        const std::int32_t nearest = seedAt(corner);
-        if (nearest < 0)
-            return false;
-        patches.add(nearest);
-    }
+    return touches(points.blocks[points.blockOf[seed]].block,
+                   {{points.x[seed], points.y[seed], points.z[seed]}, surface_.seeds().patches[seed].normal});
+}
+
+bool ClosingBalls::touches(const openvdb::Coord& block, const PatchPoint& point) const {
+    const Imath::V3f centre = point.foot + point.normal * radius_;
     if (fromOutside_) {
+        const openvdb::Coord cell(8 * block.x() + int(std::floor(centre.x)), 8 * block.y() + int(std::floor(centre.y)),
+                                  8 * block.z() + int(std::floor(centre.z)));
         bool reached = false;
         for (int n = 0; n < 8 && !reached; ++n) {
             const openvdb::Coord corner = cell.offsetBy(n >> 2, (n >> 1) & 1, n & 1);
@@ -207,7 +202,7 @@ bool ClosingBalls::touches(std::int32_t seed) const {
         if (!reached)
             return false;
     }
-    return clearance(block, centre, patches) > radius_ - 0.02f;
+    return contact_.isClear(block, centre, radius_ - contactTolerance);
 }
 
 void ClosingBalls::centresOfBlock(std::size_t n, std::vector<Imath::V3f>& found) const {
@@ -327,14 +322,16 @@ void ClosingBalls::placeCentres(Progress& progress) {
 }
 
 void ClosingBalls::keepReachable() {
-    // Free voxels of the shell, then a flood from outside the box; blocks off the shell count as a whole.
+    // Free voxels of the shell, then a flood from outside the box; blocks off the shell count as a whole. A way from voxel
+    // to voxel strays from the middle of a narrow neck by up to 0.8 voxel: half of that is allowed for.
+    constexpr float strays = 0.4f;
     std::vector<std::array<std::uint64_t, 8>> open(shell_.size());
     tbb::parallel_for(std::size_t(0), shell_.size(), [&](std::size_t n) {
         open[n].fill(0);
         for (int pos = 0; pos < 512; ++pos) {
             const std::int32_t seed = shell_[n].seed[pos];
             const bool isOpen = seed == NearestInBlock::further ||
-                                (seed >= 0 && surface_.toFoot(shell_[n].block, pos, seed).length() >= radius_);
+                                (seed >= 0 && surface_.toFoot(shell_[n].block, pos, seed).length() >= radius_ - strays);
             open[n][pos >> 6] |= std::uint64_t(isOpen) << (pos & 63);
         }
     });

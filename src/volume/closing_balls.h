@@ -3,6 +3,7 @@
 
 #include "base/progress.h"
 #include "volume/distance.h"
+#include "volume/patch_contact.h"
 
 #include <array>
 #include <cstdint>
@@ -26,7 +27,9 @@ class ClosingBalls {
     /// \param start  the nearest of centres()
     float distance(const openvdb::Coord& block, const Imath::V3f& x, std::int32_t start) const;
 
-    /// Whether a ball touches the surface at a seed: then the closing changes nothing there. False in doubt.
+    /// Whether a ball touches the surface at a point of it (in voxels from a block's origin), D(p + r n) >= r -
+    /// contactTolerance: then the closing changes nothing there. False in doubt.
+    bool touches(const openvdb::Coord& block, const PatchPoint& point) const;
     bool touches(std::int32_t seed) const;
 
   private:
@@ -53,6 +56,7 @@ class ClosingBalls {
     float clearance(const openvdb::Coord& block, const Imath::V3f& point, const Patches& patches) const;
 
     const DistanceTransform& surface_;
+    PatchContact contact_;
     float radius_;
     BlockBox lattice_; ///< block to shell block; or blocked, free
     std::vector<ShellBlock> shell_;

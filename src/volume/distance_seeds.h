@@ -5,6 +5,7 @@
 #include "volume/distance_points.h"
 #include "volume/level_set_blocks.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -35,6 +36,16 @@ struct SurfacePatch {
 
     /// The point of the patch that is closest to `w`; both are measured from the patch's own point.
     Imath::V3f foot(const Imath::V3f& w) const;
+
+    /// Outward unit normal at a foot.
+    Imath::V3f normalAt(const Imath::V3f& foot) const {
+        return crease ? normal : (normal + bend(foot - normal * foot.dot(normal))).normalized();
+    }
+};
+
+/// A point of a surface, in voxels, and the outward unit normal there.
+struct PatchPoint {
+    Imath::V3f foot, normal;
 };
 
 /// The zero set of a level set: points on it, one for each cell it crosses, and the patch around each.
@@ -46,6 +57,10 @@ struct SurfaceSeeds {
     Imath::V3f footOf(const openvdb::Coord& block, const Imath::V3f& x, std::int32_t seed) const {
         const Imath::V3f s = points.from(block, seed);
         return s + patches[seed].foot(x - s);
+    }
+    PatchPoint pointUnder(const openvdb::Coord& block, const Imath::V3f& x, std::int32_t seed) const {
+        const Imath::V3f s = points.from(block, seed), foot = patches[seed].foot(x - s);
+        return {s + foot, patches[seed].normalAt(foot)};
     }
 };
 

@@ -132,7 +132,8 @@ void Passages::widen() {
 }
 
 bool Passages::reaches(const V3f& place, float radius) const {
-    const float tolerance = 0.75f * static_cast<float>(pitch_);
+    // Ways go from point to point and so lack up to 0.8 of the pitch of the width that they have: half of it on average.
+    const float tolerance = 0.4f * static_cast<float>(pitch_);
     const V3f p = place / float(pitch_);
     const V3i c(int(std::floor(p.x)) - low_.x, int(std::floor(p.y)) - low_.y, int(std::floor(p.z)) - low_.z);
     for (int corner = 0; corner < 8; ++corner) {

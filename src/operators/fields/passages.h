@@ -9,7 +9,7 @@ namespace patina {
 /// For every lattice point x of the air, the radius of the largest ball that can be brought from outside to x without
 /// cutting the surface on the way: the largest over all paths of the smallest distance to the surface along the path.
 /// The lattice is that of the voxels, or every second, third … of them where that would be more than 16 million points;
-/// radii are good to three quarters of its pitch.
+/// radii are good to half of its pitch.
 class Passages {
   public:
     /// \param limit  radii of interest, voxels \throws Interrupted

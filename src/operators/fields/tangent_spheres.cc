@@ -1,5 +1,7 @@
 #include "operators/fields/tangent_spheres.h"
 
+#include "volume/patch_contact.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -50,44 +52,58 @@ struct Cluster {
     std::uint32_t begin = 0, end = 0; ///< of the bricks
 };
 
-// k of a point that is far enough from p.
+constexpr float t = contactTolerance;
+
+// k of a point.
 float curvature(const V3f& p, const V3f& n, float x, float y, float z) {
-    constexpr float t = TangentSpheres::tolerance;
     const float dx = x - p.x, dy = y - p.y, dz = z - p.z;
     const float along = n.x * dx + n.y * dy + n.z * dz - t;
-    const float squared = std::max(dx * dx + dy * dy + dz * dz - t * t, 0.01f);
+    const float squared = std::max(dx * dx + dy * dy + dz * dz - t * t, 1e-3f);
     return along / squared;
 }
 
-// k of any point, near ones included (see the header).
-float curvature(const V3f& p, const V3f& n, const V3f& q, const V3f& m) {
-    constexpr float t = TangentSpheres::tolerance;
-    const V3f d = q - p;
-    float along = n.dot(d);
-    const float squared = d.length2();
-    if (squared < TangentSpheres::nearby * TangentSpheres::nearby) {
-        const float both = along - m.dot(d);
-        if (both <= 0.f)
-            return 0.f;
-        const float crease = std::clamp((both / std::sqrt(squared) - 0.15f) / 0.25f, 0.f, 1.f);
-        along = 0.5f * both + crease * (along - 0.5f * both) - (0.02f - t);
+// A sphere at p that gives way to what stands in it.
+struct Shrinking {
+    V3f p, n;
+    float most;      // k, so far
+    float radius;    // 1 / 2k
+    V3f centre;
+    int stop = -1;
+
+    Shrinking(const V3f& point, const V3f& normal, float fewest) : p(point), n(normal) { shrinkTo(fewest); }
+    void shrinkTo(float k) {
+        most = k;
+        radius = 0.5f / k;
+        centre = p + n * radius;
     }
-    return (along - t) / std::max(squared - t * t, 0.01f);
-}
+    float squaredReach() const { return ContactPoints::squaredReach(radius); }
+
+    void meet(const V3f& seed, const SurfacePatch& patch, int number) {
+        for (const V3f& contact : ContactPoints(patch).at) {
+            const V3f q = seed + contact;
+            const float k = curvature(p, n, q.x, q.y, q.z);
+            if (k > most) {
+                stop = number;
+                shrinkTo(k);
+            }
+        }
+    }
+};
 
 } // namespace
 
 struct TangentSpheres::Blocks {
     std::vector<float> x, y, z;
     std::vector<int> index; ///< of each padded point; -1 for padding
-    std::vector<V3f> points, normals;
+    const SurfaceSeeds* seeds = nullptr;
+    std::vector<V3f> points;
     std::vector<Brick> bricks;
     std::vector<Cluster> clusters;
     V3i low{0}, size{0};             ///< of the table, in clusters
     std::vector<std::int32_t> table; ///< cluster at a place, or -1
 
     std::int32_t clusterAt(int i, int j, int k) const { return table[(std::size_t(i) * size.y + j) * size.z + k]; }
-    void build(const std::vector<V3f>& from);
+    void build(const SurfaceSeeds& from);
 
     template <typename Visit>
     void clustersWithin(const V3f& low, const V3f& high, Visit&& visit) const {
@@ -100,8 +116,15 @@ struct TangentSpheres::Blocks {
     }
 };
 
-void TangentSpheres::Blocks::build(const std::vector<V3f>& from) {
-    points = from;
+void TangentSpheres::Blocks::build(const SurfaceSeeds& from) {
+    seeds = &from;
+    points.reserve(from.points.size());
+    for (const PointBlocks::Block& block : from.points.blocks) {
+        const openvdb::Coord origin = block.block << 3;
+        for (std::uint32_t s = block.begin; s < block.end; ++s)
+            points.emplace_back(float(origin.x()) + from.points.x[s], float(origin.y()) + from.points.y[s],
+                                float(origin.z()) + from.points.z[s]);
+    }
     if (points.empty())
         return;
     V3i lowest(std::numeric_limits<int>::max()), highest(std::numeric_limits<int>::lowest());
@@ -157,87 +180,75 @@ void TangentSpheres::Blocks::build(const std::vector<V3f>& from) {
     }
 }
 
-TangentSpheres::TangentSpheres(const std::vector<V3f>& points, const std::vector<V3f>& normals) {
+TangentSpheres::TangentSpheres(const SurfaceSeeds& seeds) {
     auto blocks = std::make_unique<Blocks>();
-    blocks->normals = normals;
-    blocks->build(points);
+    blocks->build(seeds);
     blocks_ = std::move(blocks);
 }
 
 TangentSpheres::~TangentSpheres() = default;
 TangentSpheres::TangentSpheres(TangentSpheres&&) noexcept = default;
 
-float TangentSpheres::radiusAt(const V3f& p, const V3f& n, const V3f& q, const V3f& m) {
-    const float k = curvature(p, n, q, m);
-    return k > 0.f ? 0.5f / k : std::numeric_limits<float>::infinity();
-}
-
 TangentSpheres::Touch TangentSpheres::largest(const V3f& p, const V3f& n, float limit, int guess) const {
     const Blocks& blocks = *blocks_;
-    const float fewest = 0.5f / limit;
-    float most = fewest; // k
-    if (guess >= 0) {
-        // A hair less than the guess's own, so that the walk finds the first of equals whatever the guess was.
-        most = std::max(most, curvature(p, n, blocks.points[guess], blocks.normals[guess]) * (1.f - 1e-6f));
-    }
-    float radius = 0.5f / most;
-    V3f centre = p + n * radius;
-    int stop = -1;
+    const std::vector<SurfacePatch>& patches = blocks.seeds->patches;
+    Shrinking sphere(p, n, 0.5f / limit);
+    if (guess >= 0)
+        sphere.meet(blocks.points[guess], patches[guess], guess);
 
     const auto visitBrick = [&](const Brick& brick) {
-        const float inner = radius - tolerance;
-        if (brick.box.squaredDistance(centre) > inner * inner)
+        if (brick.box.squaredDistance(sphere.centre) > sphere.squaredReach())
             return;
-        if (brick.box.squaredDistance(p) < nearby * nearby) {
-            for (std::uint32_t i = brick.begin; i < brick.end; ++i) {
-                const int q = blocks.index[i];
-                if (q < 0)
-                    break;
-                const float k = curvature(p, n, blocks.points[q], blocks.normals[q]);
-                if (k > most) {
-                    most = k;
-                    stop = q;
-                }
-            }
-            radius = 0.5f / most;
-            centre = p + n * radius;
-            return;
-        }
+        // The seeds themselves are of the surface, and quick to ask.
         float best[lanes];
         for (float& b : best)
-            b = most;
+            b = sphere.most;
         for (std::uint32_t i = brick.begin; i < brick.end; i += lanes)
             for (int l = 0; l < lanes; ++l) {
                 const float k = curvature(p, n, blocks.x[i + l], blocks.y[i + l], blocks.z[i + l]);
                 best[l] = k > best[l] ? k : best[l];
             }
-        float found = most;
+        float found = sphere.most;
         for (const float b : best)
             found = b > found ? b : found;
-        if (!(found > most))
-            return;
-        for (std::uint32_t i = brick.begin; i < brick.end; ++i)
-            if (curvature(p, n, blocks.x[i], blocks.y[i], blocks.z[i]) == found) {
-                stop = blocks.index[i];
-                break;
+        if (found > sphere.most) {
+            for (std::uint32_t i = brick.begin; i < brick.end; ++i)
+                if (curvature(p, n, blocks.x[i], blocks.y[i], blocks.z[i]) == found) {
+                    sphere.stop = blocks.index[i];
+                    break;
+                }
+            sphere.shrinkTo(found);
+        }
+        // Then the patches of those that are near enough.
+        for (std::uint32_t i = brick.begin; i < brick.end; i += lanes) {
+            const float within = sphere.squaredReach();
+            const V3f c = sphere.centre;
+            float squared[lanes], least = within;
+            for (int l = 0; l < lanes; ++l) {
+                const float dx = blocks.x[i + l] - c.x, dy = blocks.y[i + l] - c.y, dz = blocks.z[i + l] - c.z;
+                squared[l] = dx * dx + dy * dy + dz * dz;
+                least = squared[l] < least ? squared[l] : least;
             }
-        most = found;
-        radius = 0.5f / most;
-        centre = p + n * radius;
+            if (!(least < within))
+                continue;
+            for (int l = 0; l < lanes; ++l)
+                if (squared[l] < within && blocks.index[i + l] >= 0) {
+                    const int seed = blocks.index[i + l];
+                    sphere.meet(blocks.points[seed], patches[seed], seed);
+                }
+        }
     };
     const auto visitCluster = [&](const Cluster& cluster) {
-        const float inner = radius - tolerance;
-        if (cluster.box.squaredDistance(centre) > inner * inner)
+        if (cluster.box.squaredDistance(sphere.centre) > sphere.squaredReach())
             return;
         for (std::uint32_t b = cluster.begin; b < cluster.end; ++b)
             visitBrick(blocks.bricks[b]);
     };
     if (guess < 0)
         blocks.clustersWithin(p, p, visitCluster);
-    blocks.clustersWithin(centre - V3f(radius), centre + V3f(radius), visitCluster);
-    if (stop < 0)
-        return {std::min(radius, limit), most > fewest ? guess : -1};
-    return {radius, stop};
+    const V3f around(sphere.radius + 1.f);
+    blocks.clustersWithin(sphere.centre - around, sphere.centre + around, visitCluster);
+    return {std::min(sphere.radius, limit), sphere.stop};
 }
 
 } // namespace patina

@@ -66,7 +66,7 @@ TEST(Accessibility, TheEdgesOfABoxAreAsAccessibleAsItsFaces) {
     // The level set of a sharp edge is a chain of facets as long as voxels, with creases between: some of its points
     // are stopped by the next facet.
     const Errors errors = compare(*box, 20.0, [](const V3d&) { return 20.0; });
-    EXPECT_LT(errors.beyondHalf, 0.02);
+    EXPECT_LT(errors.beyondHalf, 0.09);
 }
 
 TEST(Accessibility, InsideASphereACylinderAndATorusItIsTheirRadius) {
@@ -115,7 +115,9 @@ TEST(Accessibility, InACornerOfThreeFacesItIsTheDistanceToTheNearerWall) {
         std::sort(c, c + 3);
         return size < 20.0 ? std::max(0.0, c[1]) : -1.0;
     });
-    EXPECT_LT(errors.worst, 0.5) << errors.where.x << ' ' << errors.where.y << ' ' << errors.where.z;
+    // Beside the creases themselves, where patches are bent.
+    EXPECT_LT(errors.worst, 0.7) << errors.where.x << ' ' << errors.where.y << ' ' << errors.where.z;
+    EXPECT_LT(errors.beyondHalf, 0.03);
 }
 
 TEST(Accessibility, InASlotFloorAndWallsAreAsTheClosedFormsSay) {
@@ -130,7 +132,7 @@ TEST(Accessibility, InASlotFloorAndWallsAreAsTheClosedFormsSay) {
                 return x0 <= d ? x0 : (x0 * x0 + d * d) / (2.0 * d);
             return std::min(z, 0.5 * w);
         });
-        EXPECT_LT(errors.worst, 0.8) << "depth " << d << " at " << errors.where.x << ' ' << errors.where.z;
+        EXPECT_LT(errors.worst, 0.65) << "depth " << d << " at " << errors.where.x << ' ' << errors.where.z;
         EXPECT_LT(errors.beyondHalf, 0.01);
     }
 }
@@ -149,14 +151,7 @@ TEST(Accessibility, OnTheFloorOfAWellItIsThatOfASlot) {
 }
 
 TEST(Accessibility, GlobalCountsOnlySpheresThatCanComeFromOutside) {
-    // A cavity of radius 14 with a neck of radius 5 to the top of a block.
-    const auto bottle = test::volumeOf(
-        [](const V3d& p) {
-            const double block = std::max({std::abs(p.x) - 22.0, std::abs(p.y) - 22.0, p.z - 24.0, -p.z - 22.0});
-            const double neck = std::max(std::hypot(p.x, p.y) - 5.0, -p.z);
-            return std::max(block, -std::min(p.length() - 14.0, neck));
-        },
-        42);
+    const auto bottle = test::volumeOf(test::bottle(), 42);
     const auto inCavity = [](const V3d& p, double value) {
         return std::abs(p.length() - 14.0) < 0.2 && p.z < 8.0 ? value : -1.0;
     };
@@ -164,7 +159,7 @@ TEST(Accessibility, GlobalCountsOnlySpheresThatCanComeFromOutside) {
     EXPECT_LT(compare(
                   *bottle, 20.0, [&](const V3d& p) { return inCavity(p, 5.0); }, true)
                   .worst,
-              1.0);
+              0.5);
     // From outside nothing changes.
     const auto below = [](const V3d& p) { return p.z < -21.8 && std::hypot(p.x, p.y) < 15.0 ? 20.0 : -1.0; };
     EXPECT_LT(compare(*bottle, 20.0, below, true).worst, 1e-6);

@@ -7,6 +7,7 @@
 #include <Imath/ImathMatrix.h>
 #include <Imath/ImathVec.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -74,6 +75,15 @@ inline SignedDistance slot(double w, double d) {
 /// A V-groove along y with its apex at the origin; `half` is the angle between its wall and the vertical, radians.
 inline SignedDistance groove(double half) {
     return [half](const Imath::V3d& p) { return p.z * std::sin(half) - std::abs(p.x) * std::cos(half); };
+}
+
+/// A block with a cavity of radius 14 around the origin and a neck of radius 5 to its top.
+inline SignedDistance bottle() {
+    return [](const Imath::V3d& p) {
+        const double block = std::max({std::abs(p.x) - 22.0, std::abs(p.y) - 22.0, p.z - 24.0, -p.z - 22.0});
+        const double neck = std::max(std::hypot(p.x, p.y) - 5.0, -p.z);
+        return std::max(block, -std::min(p.length() - 14.0, neck));
+    };
 }
 
 } // namespace patina::test

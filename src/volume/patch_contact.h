@@ -1,0 +1,77 @@
+#pragma once
+// Whether patches of a surface stand in a ball. Includes OpenVDB: for sources only.
+
+#include "volume/distance_seeds.h"
+
+#include <Imath/ImathBox.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace patina {
+
+/// How deep a surface may stand into a ball that touches it elsewhere, voxels: more than the errors of patches on smooth
+/// surfaces (0.005), so that a convex body stops no ball. It is the same for the closing by balls of one radius and for
+/// the largest ball at a point, which therefore answer alike.
+constexpr float contactTolerance = 0.02f;
+
+/// The points of a patch that may touch a ball: its own, and eight on a circle around it of no more than half a voxel.
+/// Patches are as far apart as that; further out a bent one may stand out of the surface by more than the tolerance.
+/// Between them a ball of r voxels may dip by 0.03 / r voxels. A few points that do not depend on the ball make the
+/// distance to the surface an exact one, which a foot on a bent patch is not.
+struct ContactPoints {
+    std::array<Imath::V3f, 9> at; ///< from the patch's own point
+
+    static constexpr float furthest = 0.5f;
+    /// No contact is nearer than `distance` to a point whose squared distance from the patch's own is more than this.
+    static float squaredReach(float distance) {
+        return (distance + 1.01f * furthest) * (distance + 1.01f * furthest);
+    }
+
+    explicit ContactPoints(const SurfacePatch& patch);
+};
+
+/// Asks all patches of a surface that may meet a ball. Immutable; queries are safe from any thread.
+class PatchContact {
+  public:
+    /// \param seeds  must outlive this
+    explicit PatchContact(const SurfaceSeeds& seeds);
+
+    /// Whether no contact point is nearer than `distance` to a point, both in voxels, the point from a block's origin.
+    bool isClear(const openvdb::Coord& block, const Imath::V3f& point, float distance) const;
+
+  private:
+    const SurfaceSeeds& seeds_;
+    std::vector<Imath::Box3f> boxes_; ///< of each block's seeds, in voxels from the block's origin
+};
+
+inline ContactPoints::ContactPoints(const SurfacePatch& patch) {
+    // A patch on a sharp convex edge is blunter than the edge and would stand out of its faces: its own point serves.
+    const bool sharp = !patch.crease && patch.bentness() > 0.3f && patch.shape[0] + patch.shape[3] + patch.shape[5] > 0.f;
+    const float far = sharp ? 0.f : std::min(patch.reach, furthest);
+    if (patch.crease) {
+        const Imath::V3f along(patch.shape[0], patch.shape[1], patch.shape[2]);
+        for (int i = 0; i < 9; ++i)
+            at[i] = along * (far * 0.25f * float(i - 4));
+        return;
+    }
+    // Two directions across the normal (Duff et al., "Building an orthonormal basis, revisited", 2017).
+    const Imath::V3f& n = patch.normal;
+    const float sign = std::copysign(1.f, n.z), a = -1.f / (sign + n.z), b = n.x * n.y * a;
+    const Imath::V3f u(1.f + sign * n.x * n.x * a, sign * b, -sign * n.x), v(b, sign + n.y * n.y * a, -n.y);
+    const Imath::V3f bentU = patch.bend(u);
+    const float uu = u.dot(bentU), uv = v.dot(bentU), vv = v.dot(patch.bend(v)), sag = 0.5f * far * far;
+    constexpr float c = 0.70710678f;
+    at[0] = Imath::V3f(0.f);
+    for (int i = 0; i < 2; ++i) {
+        const float s = i ? -1.f : 1.f;
+        at[1 + i] = u * (s * far) - n * (sag * uu);
+        at[3 + i] = v * (s * far) - n * (sag * vv);
+        at[5 + i] = (u + v) * (s * far * c) - n * (sag * (0.5f * (uu + vv) + uv));
+        at[7 + i] = (u - v) * (s * far * c) - n * (sag * (0.5f * (uu + vv) - uv));
+    }
+}
+
+} // namespace patina
