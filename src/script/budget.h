@@ -11,7 +11,7 @@ struct Budget {
     double activeVoxels = 0.0;
     double allocatedVoxels = 0.0; ///< of all leaves, per grid
     double volumeBytes = 0.0;     ///< of all grids when they are most
-    double mapBytes = 0.0;        ///< of all maps while they are baked
+    double mapBytes = 0.0;        ///< what baking holds: points of all texels, some rows of all maps
     double peakBytes = 0.0;       ///< of the process
     double diskBytes = 0.0;       ///< about, uncompressed
 };

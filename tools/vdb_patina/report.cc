@@ -3,6 +3,7 @@
 #include "export/texel_map.h"
 #include "optics/colour.h"
 #include "surface/mesh_repair.h"
+#include "volume/memory_formula.h"
 
 #include <sys/resource.h>
 
@@ -126,6 +127,8 @@ Json makeReport(const Program& program, const Model& model, const Options& optio
     report["volume"] = {{"active_voxels", volume.activeVoxels()},
                         {"leaves", volume.leafCount()},
                         {"bytes", volume.memoryBytes()},
+                        {"leaf_value_bytes", leafValueBytes(volume)},
+                        {"memory_of_formula", memoryOfFormula(volume)},
                         {"palette", volume.palette()}};
     report["statements"] = earlier;
     for (const StatementReport& statement : run.statements)
@@ -191,6 +194,9 @@ void finishReport(Json& report, const Console& console, const std::vector<std::s
     }
     report["seconds"] = total;
     report["peak_memory_bytes"] = peakMemoryBytes();
+    // Of the process, the program and its libraries included.
+    if (const auto volume = report.find("volume"); volume != report.end() && volume->contains("leaf_value_bytes"))
+        (*volume)["peak_of_formula"] = peakMemoryBytes() / (1.15 * (*volume)["leaf_value_bytes"].get<double>());
     report["warnings"] = console.warnings();
     report["outputs"] = outputs;
 }

@@ -1,0 +1,63 @@
+// What `check` says a run's memory will peak at, against the peak that the run then reports.
+
+#include "program.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <regex>
+
+namespace patina::test {
+namespace {
+
+using nlohmann::json;
+
+const char* const fourLayers = "new copper\n"
+                               "coat tarnish_1 0.35\n"
+                               "coat cuprite_2 1.2\n"
+                               "coat marine_patina_3 3\n"
+                               "erode 0.5\n";
+
+// "… peak memory 213 MiB, disk …" in bytes.
+double peakSaid(const std::string& text) {
+    std::smatch found;
+    if (!std::regex_search(text, found, std::regex("peak memory ([0-9.]+) ([KMG])iB")))
+        return NAN;
+    const std::string unit = found[2];
+    return std::stod(found[1]) * (unit == "K" ? 1024.0 : unit == "M" ? 1048576.0 : 1073741824.0);
+}
+
+class Budget : public testing::Test {
+  protected:
+    void expectPeakWithin15Percent(const std::string& model, const std::string& voxels, const std::string& resolution) {
+        SCOPED_TRACE(model + ", " + voxels + " voxels, maps of " + resolution);
+        const TemporaryFolder folder;
+        folder.file("a.patina", fourLayers);
+        const Arguments run{"run", "a.patina", model, "--voxels", voxels, "--resolution", resolution,
+                            "--threads", "2", "--picture", "0", "-o", "out"};
+        Arguments dry = run;
+        dry.push_back("--dry-run");
+        const Outcome said = vdbPatina(dry, folder.path());
+        ASSERT_EQ(said.exitCode, 0) << said.err;
+        const Outcome done = vdbPatina(run, folder.path());
+        ASSERT_EQ(done.exitCode, 0) << done.err;
+        const json report = json::parse(readFile(folder.path() / "out/report.json"));
+        const double peak = report["peak_memory_bytes"];
+        EXPECT_NEAR(peakSaid(said.out) / peak, 1.0, 0.15) << peakSaid(said.out) << " of " << peak;
+        // Grids are no less than their leaves' values, and their peak no less than they are.
+        EXPECT_GT(report["volume"]["memory_of_formula"].get<double>(), 1.0);
+        EXPECT_GT(1.15 * report["volume"]["peak_of_formula"].get<double>(),
+                  report["volume"]["memory_of_formula"].get<double>());
+    }
+};
+
+TEST_F(Budget, OfThePeakIsWithin15PercentWhetherVolumeOrMapsAreLarge) {
+    expectPeakWithin15Percent("sphere", "96", "64");
+    expectPeakWithin15Percent("sphere", "64", "1024");
+    expectPeakWithin15Percent("statuette", "96", "64");
+}
+
+} // namespace
+} // namespace patina::test
