@@ -185,7 +185,7 @@ OperationReport erode(Workpiece& work, double thicknessUm, const ThicknessMap* m
     } else {
         field = makeShiftField(work, thicknessUm, map, false, report, progress, reach);
         if (air.anyClosed())
-            rises = sealedRise(work, air, thickness, map, progress);
+            rises = sealedRise(work, air, thickness, map, metalHardness.has_value(), progress);
     }
 
     NestGrids& grids = volume.grids();

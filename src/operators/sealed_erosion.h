@@ -14,9 +14,12 @@ namespace patina {
 ///
 ///     rise = max(0, D + t - phi_n).
 ///
+/// Distances go round metal that stays: straight where it does not lie between, else from voxel to voxel.
+///
 /// \param drawn  largest thickness, scene units
+/// \param throughMetal  the metal goes too: all distances are straight
 /// \return scene units, in the order of the base's leaves and active voxels; 0 in all other voxels
 std::vector<float> sealedRise(const Workpiece& work, const OpenAir& air, double drawn, const ThicknessMap* map,
-                              Progress& progress);
+                              bool throughMetal, Progress& progress);
 
 } // namespace patina

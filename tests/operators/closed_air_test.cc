@@ -162,5 +162,36 @@ TEST(ClosedAir, ErosionComesThroughAWallFromOutsideOnly) {
     EXPECT_GT(inside, 500);
 }
 
+TEST(ClosedAir, AnErosionThatOpensAPoreTakesNothingFromBehindThinMetal) {
+    // A wall of two voxels of metal, coated on both sides through a channel that the coat closes.
+    const auto piece = test::hollowBall(14.f, 12.f, 1.2, 10.0);
+    auto work = piece->work();
+    coat(work, "tarnish_1", 0.3, nullptr, piece->progress);
+    coat(work, "crust", 2.2, nullptr, piece->progress);
+    ASSERT_TRUE(OpenAir(*piece->volume).anyClosed());
+    const LayerVolume before = piece->volume->clone();
+    // From the crust's top over the channel to the air in the hollow it is some seven voxels; so it is through the metal.
+    erode(work, 9.0, nullptr, {}, piece->progress);
+    ASSERT_FALSE(OpenAir(*piece->volume).anyClosed());
+    const auto was = before.grids().surface().getConstAccessor(),
+               is = piece->volume->grids().surface().getConstAccessor(),
+               base = piece->volume->grids().base->getConstAccessor();
+    int kept = 0;
+    for (auto voxel = before.grids().base->cbeginValueOn(); voxel; ++voxel) {
+        const auto c = voxel.getCoord();
+        const double r = std::sqrt(double(c.x()) * c.x() + double(c.y()) * c.y() + double(c.z()) * c.z());
+        if (r < 12.0 && c.z() < 0) { // the hollow, away from the channel
+            ASSERT_EQ(is.getValue(c), was.getValue(c)) << c;
+            ++kept;
+        }
+        if (r > 14.0 && c.z() < 0) { // outside all is gone
+            ASSERT_EQ(is.getValue(c), base.getValue(c)) << c;
+        }
+    }
+    EXPECT_GT(kept, 1000);
+    // Beside the channel's mouth in the hollow the front has come in.
+    EXPECT_GT(is.getValue({0, 0, 11}), 0.f);
+}
+
 } // namespace
 } // namespace patina
