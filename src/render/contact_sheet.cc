@@ -150,7 +150,7 @@ ContactSheet makeContactSheet(const std::vector<LabelledImage>& images, const Co
     // Letters stand a third of their height above the bottom of their band.
     sheet.hasText =
         drawText(sheet.image, options.title, 0.5f * float(sheet.image.width), float(gap) + 1.25f * float(titleLetters),
-                 titleLetters, options.ink, TextAlign::centre, float(sheet.image.width - 2 * gap));
+                 titleLetters, options.ink, TextAlign::centre, 0.92f * float(sheet.image.width));
     for (int i = 0; i < count; ++i) {
         const LabelledImage& entry = images[std::size_t(i)];
         const int left = gap + (i % columns) * (cellWidth + gap);

@@ -92,7 +92,7 @@ ContactSheet makePlate(const std::vector<PlacedImage>& images, const ContactShee
             sheet.image.setRgb(x, y, options.paper);
     sheet.hasText =
         drawText(sheet.image, options.title, 0.5f * float(sheet.image.width), float(gap) + 1.25f * float(titleLetters),
-                 titleLetters, options.ink, TextAlign::centre, float(sheet.image.width - 2 * gap));
+                 titleLetters, options.ink, TextAlign::centre, 0.92f * float(sheet.image.width));
     for (const PlacedImage& entry : images) {
         const Image& picture = entry.picture.image;
         const int width = columns.extent(entry.column, entry.columns), height = rows.extent(entry.row, entry.rows);

@@ -14,6 +14,7 @@
 #include "optics/toml_reader.h"
 #include "render/chart.h"
 #include "render/film.h"
+#include "volume/vdb_file.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -21,6 +22,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <regex>
 
 namespace patina::tool {
 
@@ -108,6 +110,12 @@ std::vector<std::pair<std::string, double>> partsOf(const std::string& material)
             if (const toml::table* part = one.as_table())
                 parts.emplace_back((*part)["material"].value_or(std::string()), (*part)["volume"].value_or(0.0));
     return parts;
+}
+
+// The script with `open` in place of `new`.
+std::string goingOnFrom(const std::string& volume, const std::string& script) {
+    static const std::regex beginning(R"((^|\n)new[ \t]+\w+)");
+    return std::regex_replace(script, beginning, fmt::format("$1open \"{}\"", volume));
 }
 
 std::string spaced(std::string name) {
@@ -308,15 +316,28 @@ void FigureMaker::make(const FigurePanel& what, const std::string& model, const 
         key += setting + "\n";
     if (made_.key == key)
         return;
-    made_ = {};
     const fs::path script = folder_ / (what.name + ".patina");
-    writeTextFile(script, what.script);
-    Task task = prepareTask(script.string(), model, materials_, options, console_);
+    const bool goesOn = what.continues && made_.volume;
+    if (goesOn) {
+        const fs::path last = folder_ / (what.name + ".vdb");
+        writeVolume(*made_.volume, last);
+        made_.session->keep(last, std::move(*made_.volume));
+        made_.volume.reset();
+        writeTextFile(script, goingOnFrom(last.filename().string(), what.script));
+        nextScript(*made_.task, script.string(), materials_, options, console_);
+    } else {
+        made_ = {};
+        writeTextFile(script, what.script);
+        made_.task = std::make_unique<Task>(prepareTask(script.string(), model, materials_, options, console_));
+        made_.session = std::make_unique<RunSession>();
+    }
+    const Task& task = *made_.task;
     checkBudget(task, options, console_);
-    RunResult result = runProgram(task.program, task.model.surface, materials_, runOptionsOf(task, options), console_);
+    RunOptions run = runOptionsOf(task, options);
+    run.session = made_.session.get();
+    RunResult result = runProgram(task.program, task.model.surface, materials_, run, console_);
     if (result.interrupted)
         throw Interrupted();
-    made_.task = std::move(task);
     made_.volume = std::move(result.volume);
     made_.key = key;
 }

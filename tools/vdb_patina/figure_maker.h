@@ -10,6 +10,7 @@
 #include "volume/layer_volume.h"
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,10 +37,11 @@ class FigureMaker {
     Imath::V3f colourOf(const std::string& material) const;
     void make(const FigurePanel& what, const std::string& model, const Options& options);
 
-    // A volume that several panels look at is made once.
+    // A volume that several panels look at is made once; those that continue go on from it.
     struct MadeVolume {
         std::string key;
-        std::optional<Task> task;
+        std::unique_ptr<Task> task; ///< whose model the session points to
+        std::unique_ptr<RunSession> session;
         std::optional<LayerVolume> volume;
     };
 

@@ -104,7 +104,7 @@ FigurePanel readPanel(TomlReader& reader, const toml::table& table, const fs::pa
                       const FigureOptions& outer, std::size_t number) {
     reader.allowOnly(table, withOptions({"kind", "label", "script", "text", "model", "set", "map", "at", "along",
                                          "width", "stretch", "by_id", "in_place", "environment", "years", "replaceable",
-                                         "environments", "key", "place"}));
+                                         "environments", "key", "place", "continues"}));
     FigurePanel panel;
     panel.kind = kindNamed(reader, table);
     panel.label = reader.word(table, "label");
@@ -121,6 +121,9 @@ FigurePanel readPanel(TomlReader& reader, const toml::table& table, const fs::pa
     panel.inPlace = reader.truth(table, "in_place");
     panel.environment = reader.word(table, "environment");
     panel.years = reader.number(table, "years", 0.1, 1e4).value_or(30.0);
+    panel.continues = reader.truth(table, "continues");
+    if (panel.continues && number == 1)
+        reader.error(*table.get("continues"), "the first panel has nothing to go on from");
     panel.replaceable = reader.truth(table, "replaceable");
     panel.set = wordList(reader, table, "set");
     panel.environments = wordList(reader, table, "environments");

@@ -53,6 +53,7 @@ struct FigurePanel {
     double years = 30.0;            ///< kind stages
     std::vector<std::string> environments, key; ///< kind diagram: its columns, and materials to name below
     std::optional<FigurePlace> place;           ///< of all panels or of none
+    bool continues = false;   ///< goes on from the volume of the panel before: `open` in place of the script's `new`
     bool replaceable = false; ///< --model puts another model in
 };
 

@@ -67,8 +67,9 @@ TEST(GrowthHistory, goesOnFromAnEarlierStepForTheWorkOfTheRest) {
             EXPECT_EQ(later.factor, direct.factor);
             EXPECT_EQ(later.statistics.particles, direct.statistics.particles);
             EXPECT_EQ(later.statistics.density, direct.statistics.density);
-            if (model == GrowthModel::ballisticDeposition || model == GrowthModel::directedPercolation)
+            if (model == GrowthModel::ballisticDeposition || model == GrowthModel::directedPercolation) {
                 EXPECT_EQ(earlier.statistics.arrivals + later.statistics.arrivals, direct.statistics.arrivals);
+            }
         }
     const GrowthPattern five = grow(lattice, at(GrowthModel::ballisticDeposition, 5, 20), 7, "on");
     EXPECT_THROW(growOn(lattice, at(GrowthModel::ballisticDeposition, 4, 20), 7, "on", five, 5), RunError);
