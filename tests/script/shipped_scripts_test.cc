@@ -81,6 +81,8 @@ TEST(ShippedScripts, areVerbatimInThePaper) {
 
 TEST(LanguageReference, hasExamplesThatAreScripts) {
     const std::string text = readTextFile(std::filesystem::path(PATINA_SOURCE_DIR) / "docs" / "language.md");
+    CheckContext context = testContext();
+    context.kinetics = readKinetics(std::filesystem::path(PATINA_SOURCE_DIR) / "data");
     int examples = 0;
     std::size_t at = 0;
     while ((at = text.find("```\n", at)) != std::string::npos) {
@@ -92,12 +94,12 @@ TEST(LanguageReference, hasExamplesThatAreScripts) {
             continue;
         ++examples;
         try {
-            EXPECT_TRUE(readScript(block).warnings.empty()) << block;
+            EXPECT_TRUE(readScript(block, context).warnings.empty()) << block;
         } catch (const ScriptError& error) {
             ADD_FAILURE() << error.what();
         }
     }
-    EXPECT_EQ(examples, 2);
+    EXPECT_EQ(examples, 3);
 }
 
 TEST(ShippedScripts, tellOneHistoryInSixSteps) {
