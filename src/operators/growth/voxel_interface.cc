@@ -20,14 +20,15 @@ constexpr float noVoxel = std::numeric_limits<float>::max();
 constexpr float least = 0.02f; // of a voxel: a crossing stays clear of voxel centres
 constexpr float bare = 1e-3f;  // of a voxel: a column that ends no higher is none
 
-/// How deep a solid voxel of a porous layer lies, voxels, by how much of what is around it is solid (64ths; itself 8, its
-/// neighbours 4, 2 and 1). The trilinear field cuts corners and edges of particles: a single voxel at 0.5 would read as
-/// 0.27 of itself, a column as 0.6. Exact for those would be 1.2 and 0.8; the curve through them and 0.5 for a plane,
-/// fitted so that layers of BD of cells of one, two and three voxels, on a plate and turned out of the voxels' axes, read
-/// as thick as their particles are (one value for all reads 8 % too little of single voxels where larger cells are right).
+/// How deep a solid voxel of a porous layer lies, voxels, by how much of what is around it is solid (64ths; itself 8,
+/// its neighbours 4, 2 and 1). The trilinear field cuts corners and edges of particles: a single voxel at 0.5 would
+/// read as 0.27 of itself, a column as 0.6. Exact for those would be 1.2 and 0.8; the curve through them and 0.5 for a
+/// plane, fitted so that layers of BD of cells of one, two and three voxels, on a plate and turned out of the voxels'
+/// axes, read as thick as their particles are (one value for all reads 8 % too little of single voxels where larger
+/// cells are right).
 float particleDepth(int solidAround) {
     const float missing = std::max(0.f, 0.75f - static_cast<float>(solidAround) / 64.f);
-    return std::min(1.2f, 0.52f + 2.4f * missing * missing * missing);
+    return std::min(1.2f, 0.515f + 2.25f * missing * missing * missing);
 }
 
 /// A leaf's values with one voxel around it, 10³ of them; noVoxel outside the band.
@@ -120,8 +121,8 @@ bool holds(const VoxelMask& mask, openvdb::Index pos) {
 /// The voxels of a leaf that lie beside the surface.
 struct BesideSurface {
     VoxelMask voxels{};
-    VoxelMask porous{};        ///< those of them that are particles or pores
-    std::vector<float> values; ///< of the others, scene units, in order
+    VoxelMask porous{};                    ///< those of them that are particles or pores
+    std::vector<float> values;             ///< of the others, scene units, in order
     std::vector<std::uint8_t> solidAround; ///< of the particles, in order
 };
 

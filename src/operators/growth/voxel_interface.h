@@ -22,7 +22,7 @@ namespace patina {
 ///   c            where its neighbourhood is one compact piece: all solid voxels lower than all empty ones, or column
 ///                heights within a voxel of each other;
 ///   c, |c| <= 1  of an uneven compact layer: the top of each column stays where it is, its sides are at ±0.5;
-///   0.5          of a pore (by which updateMaterialIds() knows it), -0.52 to -1.2 of a particle in a porous layer, so that
+///   0.5          of a pore (by which updateMaterialIds() knows it), -0.51 to -1.2 of a particle in a porous layer, so that
 ///                it reads as the particle's volume; less where its centre lies lower than a voxel above phi_n,
 /// at least 0.02 in size. All others get their true distance to the surface that these make, which moves no
 /// crossing.

@@ -1,4 +1,5 @@
-// A porous layer's interface encloses as much as its particles fill, whatever their size and how they lie to the voxels.
+// A porous layer's interface encloses as much as its particles fill, whatever their size and how they lie to the
+// voxels.
 
 #include "operators/growth/grow.h"
 #include "operators/growth/voxel_interface.h"
