@@ -1,6 +1,7 @@
 // BD (paper section 3.3; Vold; Barabási and Stanley chapter 2): a particle sticks at first contact, sideways too.
 
 #include "operators/growth/growth_run.h"
+#include "operators/growth/oblique_track.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,6 +33,37 @@ struct BallisticRule {
     }
 };
 
+/// Particles on slanted tracks: the cell of an arrival is the one its track would reach on the bare lattice.
+struct ObliqueRule {
+    ObliqueTrack& track;
+    std::vector<std::int32_t>& height;
+    const std::vector<std::int32_t>& relief;
+    LevelOccupancy& occupancy;
+    std::int32_t highest = 0;
+    std::uint64_t particles = 0;
+
+    void prefetch(std::uint32_t cell) const { __builtin_prefetch(&height[cell]); }
+    void operator()(std::uint32_t cell, std::uint32_t time, std::uint32_t) {
+        const auto place = track.firstContact(int(cell), time, height, highest, occupancy);
+        const auto at = static_cast<std::size_t>(place.cell);
+        occupancy.add(at, place.level - relief[at]);
+        height[at] = std::max(height[at], place.level);
+        highest = std::max(highest, place.level);
+        ++particles;
+    }
+};
+
+std::uint64_t depositFrom(const GrowthRun& run, const ArrivalClock& clock, std::vector<std::int32_t>& height,
+                          const std::vector<std::int32_t>& relief) {
+    ObliqueTrack track(run.lattice, run.options.from, run.options.levelHeight, relief);
+    LevelOccupancy own(run.occupancy ? 0 : run.lattice.size());
+    ObliqueRule rule{track, height, relief, run.occupancy ? *run.occupancy : own};
+    for (const std::int32_t h : height)
+        rule.highest = std::max(rule.highest, h);
+    followArrivals(clock, 0.0, run.age, run.progress, rule);
+    return rule.particles;
+}
+
 template <bool notesPlaces>
 std::uint64_t deposit(const GrowthRun& run, const ArrivalClock& clock, std::vector<std::int32_t>& height,
                       const std::vector<std::int32_t>& relief) {
@@ -53,8 +85,11 @@ GrownHeights growBallisticDeposition(const GrowthRun& run) {
         for (std::size_t i = 0; i < height.size(); ++i)
             height[i] += static_cast<std::int32_t>(run.earlier->height[i]);
     GrownHeights grown;
-    grown.arrivals =
-        run.occupancy ? deposit<true>(run, clock, height, relief) : deposit<false>(run, clock, height, relief);
+    if (run.options.from != Imath::V3d(0.0))
+        grown.arrivals = depositFrom(run, clock, height, relief);
+    else
+        grown.arrivals =
+            run.occupancy ? deposit<true>(run, clock, height, relief) : deposit<false>(run, clock, height, relief);
     grown.particles = grown.arrivals + (run.earlier ? run.earlier->particles : 0);
     grown.height.resize(height.size());
     for (std::size_t i = 0; i < height.size(); ++i)

@@ -29,6 +29,10 @@ void checkOptions(const GrowthLattice& lattice, const GrowthOptions& options) {
     check(options.spread >= 0.0 && options.blockedSpread >= 0.0, "negative rate of spread", "use 0 or more");
     check(options.thickening >= 0.0 && options.thickening <= 1.0, "thickening out of range", "use 0 to 1");
     check(options.pointSpacing >= 1.0, "sample points closer than cells", "use fewer points");
+    check(options.from == Imath::V3d(0.0) || std::abs(options.from.length() - 1.0) < 1e-6,
+          "a direction that is not of unit length", "normalise it");
+    check(options.levelHeight > 0.0 && options.levelHeight <= 64.0, "height of a level out of range",
+          "use up to 64 cells");
     const auto fits = [&](const std::vector<float>& values) {
         return values.empty() || values.size() == lattice.size();
     };
@@ -97,6 +101,7 @@ GrowthScale expectedScale(const GrowthOptions& given) {
     options.blocked.clear();
     options.relief.clear();
     options.seedCells.clear();
+    options.from = Imath::V3d(0.0);
     if (options.ofFull)
         options.step = options.total;
     const double age = options.age();
@@ -138,6 +143,9 @@ double growthMarginCells(const GrowthOptions& options) {
         return 16.0 * options.pointSpacing; // 6 rounds that look one spacing around twice, blocks, the kernel of two
     case GrowthModel::relaxation:
         return latticeMarginCells + 2.0 * options.reach * travel;
+    case GrowthModel::ballisticDeposition:
+        // Slanted tracks come over what stands some levels higher some cells away.
+        return latticeMarginCells + travel * (options.from == Imath::V3d(0.0) ? 1.0 : 2.0);
     case GrowthModel::directedPercolation:
         return latticeMarginCells + options.patch + std::max({1.0, options.spread, options.blockedSpread}) * travel;
     default:
@@ -178,8 +186,10 @@ GrowthPattern grow(const GrowthLattice& lattice, const GrowthOptions& options, s
 
 GrowthPattern growOn(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
                      std::string_view label, const GrowthPattern& earlier, double earlierStep, Progress* progress) {
-    const bool canGoOn =
-        options.model == GrowthModel::ballisticDeposition || options.model == GrowthModel::directedPercolation;
+    // On slanted tracks a particle may pass below what overhangs, and a pattern of heights has no overhangs.
+    const bool slanted = options.from != Imath::V3d(0.0);
+    const bool canGoOn = (options.model == GrowthModel::ballisticDeposition && !slanted) ||
+                         options.model == GrowthModel::directedPercolation;
     if (!canGoOn)
         return grow(lattice, options, seed, label, progress);
     checkOptions(lattice, options);
@@ -203,8 +213,7 @@ GrownParticles growParticles(const GrowthLattice& lattice, const GrowthOptions& 
           "use BD");
     GrownParticles particles;
     particles.occupancy = LevelOccupancy(lattice.size());
-    GrownHeights grown =
-        runModel({lattice, options, options.age(), seed, label, progress, &particles.occupancy});
+    GrownHeights grown = runModel({lattice, options, options.age(), seed, label, progress, &particles.occupancy});
     if (since > 0.0) {
         GrowthOptions earlier = options;
         earlier.step = since;

@@ -39,7 +39,8 @@ GrowthPattern grow(const GrowthLattice& lattice, const GrowthOptions& options, s
                    std::string_view label, Progress* progress = nullptr);
 
 /// The same, going on from the pattern that an earlier step of the same history made (options.step aside, its options
-/// were these): the same bits for the work of what has grown since in BD and DPD. Other models grow from the start.
+/// were these): the same bits for the work of what has grown since in BD and DPD. Other models, and BD from a
+/// direction, grow from the start.
 GrowthPattern growOn(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
                      std::string_view label, const GrowthPattern& earlier, double earlierStep,
                      Progress* progress = nullptr);

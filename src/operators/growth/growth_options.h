@@ -3,6 +3,8 @@
 
 #include "operators/growth/growth_rate.h"
 
+#include <Imath/ImathVec.h>
+
 #include <optional>
 #include <string>
 #include <string_view>
@@ -44,6 +46,11 @@ struct GrowthOptions {
     double thickening = 0.5;      ///< DPD: rate at which a fully supported cell rises by a level
 
     double pointSpacing = 48; ///< ST: least distance of the sample points, cells
+
+    /// BD: towards the source, unit: particles come on straight tracks from there and touch first what stands in their way.
+    /// 0: along the normal. How many come (the cosine, shadows of the object) is for `arrival` to say.
+    Imath::V3d from{0.0, 0.0, 0.0};
+    double levelHeight = 1.0; ///< BD with `from`: of a level, in cells; 0 < levelHeight <= 64
 
     std::vector<float> arrival; ///< per cell, 0…1: fraction of the particles that arrive; empty: all
     std::vector<float> blocked; ///< per cell, 0…1: in place of blockedFraction; empty: that

@@ -7,6 +7,7 @@
 
 #include <map>
 #include <tuple>
+#include <utility>
 
 namespace patina {
 namespace {
@@ -66,11 +67,15 @@ TEST_F(Cut, hasTheCellsAndLinksOfTheWhole) {
 }
 
 TEST_F(Cut, growsAsTheWholeDoesBeyondTheMargin) {
-    for (const GrowthModel model :
-         {GrowthModel::steadyThickening, GrowthModel::randomDeposition, GrowthModel::relaxation,
-          GrowthModel::ballisticDeposition, GrowthModel::directedPercolation, GrowthModel::barabasiStanley}) {
+    const Imath::V3d none(0.0), slanting(0.6, 0.0, 0.8);
+    for (const auto& [model, from] :
+         {std::pair(GrowthModel::steadyThickening, none), std::pair(GrowthModel::randomDeposition, none),
+          std::pair(GrowthModel::relaxation, none), std::pair(GrowthModel::ballisticDeposition, none),
+          std::pair(GrowthModel::ballisticDeposition, slanting), std::pair(GrowthModel::directedPercolation, none),
+          std::pair(GrowthModel::barabasiStanley, none)}) {
         GrowthOptions options;
         options.model = model;
+        options.from = from;
         options.step = 2.5;
         options.total = 10;
         options.pointSpacing = 6;
