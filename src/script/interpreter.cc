@@ -329,14 +329,11 @@ const GrowthCall* growthOf(const Expression& map) {
 double highestCoatVoxels(const Coat& coat, const VolumeScale& scale) {
     const double thickness = coat.thicknessUm * scale.voxelsPerUm();
     const GrowthCall* call = coat.map ? growthOf(*coat.map) : nullptr;
-    if (!call || !growsInVoxels(scale, coat.thicknessUm, *growthModelNamed(call->model)))
+    if (!call)
         return thickness;
-    GrowthOptions options;
-    options.model = *growthModelNamed(call->model);
-    options.rate = *growthRateNamed(call->rate);
-    options.step = call->step;
-    options.total = call->total;
-    options.ofFull = call->ofFull;
+    const GrowthOptions options = historyOf(*call);
+    if (!growsInVoxels(scale, coat.thicknessUm, options, !call->cellUm))
+        return thickness;
     std::optional<double> cellVoxels;
     if (call->cellUm)
         cellVoxels = *call->cellUm * scale.voxelsPerUm() / scale.exaggeration;

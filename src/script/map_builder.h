@@ -36,6 +36,9 @@ struct MapContext {
     const ContextFields* context = nullptr; ///< of a close-up: the whole model's fields
 };
 
+/// Model, rate and step of a growth: what its history depends on apart from sizes and maps.
+GrowthOptions historyOf(const GrowthCall& call);
+
 /// Builds maps and keeps the growth lattices (one per pitch) that they share.
 class MapBuilder {
   public:
@@ -46,8 +49,9 @@ class MapBuilder {
     ThicknessMapPtr build(const Expression& expression, Progress& progress);
 
     /// What a coat of this map is where it grows in the voxel lattice: the first growth among the map's factors, which
-    /// the others multiply. Nothing where the map is no such product, or the coat too thin for voxels (growsInVoxels()).
-    /// Where the script gives no size, cells are voxels, but of a whole model no finer than 1/512 of its longest side.
+    /// the others multiply. Nothing where the map is no such product, or the coat too thin for voxels
+    /// (growsInVoxels()). Where the script gives no size, cells are voxels, but of a whole model no finer than 1/512 of
+    /// its longest side.
     struct CoatGrowth {
         const GrowthLattice& lattice;
         VoxelGrowth growth;
@@ -64,8 +68,10 @@ class MapBuilder {
     struct GrowthSetup {
         const GrowthLattice& cells;
         GrowthOptions options;
+        std::vector<float> flux; ///< BD on cells with `from`: what heights are multiplied by; empty: 1
     };
-    GrowthSetup setUpGrowth(const GrowthCall& call, double cell, Progress& progress);
+    /// \param asHeights  for a map of thickness, not for voxels
+    GrowthSetup setUpGrowth(const GrowthCall& call, double cell, bool asHeights, Progress& progress);
     double cellOf(const GrowthCall& call, double byDefault) const;
     ThicknessMapPtr buildGrowth(const GrowthCall& call, Progress& progress);
     /// grow(), or what it made for a map shortly before: frames of a series ask for the last one's step again, and for

@@ -20,8 +20,20 @@ namespace patina {
 
 namespace {
 
-constexpr float tie = 1e-3f;            // of a voxel
+constexpr float tie = 1e-3f;             // of a voxel
 constexpr double thinnestLevel = 0.0625; // of a voxel: no one sees finer ones, and each takes memory
+
+/// BD on an endless plane in closed form: mean and deviation of the height within 6 per cent from an age of 4 on.
+struct PlaneOfParticles {
+    double normal = 0.0; ///< age at which the pattern is normalised
+
+    explicit PlaneOfParticles(const GrowthOptions& options)
+        : normal(growthAge(options.rate, options.ofFull ? options.total : options.step, options.total)) {}
+    static double mean(double age) { return 3.334 * age - 5.5 * (1.0 - std::exp(-age / 3.0)); }
+    double top() const { return mean(normal) + 12.0 * (1.0 - std::exp(-normal / 2.3)); }
+    /// How thick a level of a coat of a thickness is.
+    double level(double thickness) const { return top() > 0.0 ? thickness * mean(normal) / (top() * normal) : 0.0; }
+};
 
 /// What stands on each cell: compact columns, or levels with pores.
 struct Columns {
@@ -30,7 +42,8 @@ struct Columns {
     std::vector<float> foot;        ///< porous: the level of the history on which the column begins; empty: 0
     LevelOccupancy occupancy;
     bool porous = false;
-    std::unique_ptr<const GrowthMap> smooth; ///< compact: the height between columns, where it runs from one to the next
+    std::unique_ptr<const GrowthMap>
+        smooth; ///< compact: the height between columns, where it runs from one to the next
 
     static float below(float c) { return c < tie ? std::min(c, 0.f) : c; }
 
@@ -97,13 +110,14 @@ Columns compactColumns(const GrowthLattice& lattice, const VoxelGrowth& growth, 
 }
 
 Columns porousColumns(const GrowthLattice& lattice, const VoxelGrowth& growth, const LevelScale& levels,
-                      VoxelGrowthReport& report, Progress& progress) {
+                      double voxelSize, VoxelGrowthReport& report, Progress& progress) {
     Columns columns;
     columns.porous = true;
     GrowthOptions options = growth.options;
     options.rate = GrowthRate::linear;
     options.step = levels.age;
     options.total = std::max(levels.age, 1e-9);
+    options.levelHeight = levels.levelVoxels * voxelSize / (lattice.cell * growth.magnification);
     GrownParticles grown = growParticles(lattice, options, growth.seed, growth.label, &progress, levels.since);
     report.statistics = grown.statistics;
     columns.foot = std::move(grown.foot);
@@ -179,8 +193,12 @@ void keepClosedAir(const LayerVolume& volume, openvdb::FloatGrid& grown) {
 
 } // namespace
 
-bool growsInVoxels(const VolumeScale& scale, double thicknessUm, GrowthModel model) {
-    return model != GrowthModel::steadyThickening && thicknessUm * scale.voxelsPerUm() >= thinnestVoxelGrowth;
+bool growsInVoxels(const VolumeScale& scale, double thicknessUm, const GrowthOptions& options, bool cubes) {
+    const double thickness = thicknessUm * scale.voxelsPerUm();
+    if (options.model == GrowthModel::steadyThickening || thickness < thinnestVoxelGrowth)
+        return false;
+    return options.model != GrowthModel::ballisticDeposition || cubes ||
+           PlaneOfParticles(options).level(thickness) >= 1.0;
 }
 
 LevelScale ballisticLevels(const VoxelGrowth& growth, double thicknessVoxels, double cellVoxels) {
@@ -212,19 +230,16 @@ double highestVoxelGrowth(const GrowthOptions& options, double since, double thi
                           std::optional<double> cellVoxels) {
     if (options.model != GrowthModel::ballisticDeposition)
         return thicknessVoxels;
-    // Mean and deviation of the height on a plane of 512² cells within 6 per cent from an age of 4 on; the highest of its
-    // columns stands 6 to 15 levels above its mean velocity's line.
-    const auto mean = [](double age) { return 3.334 * age - 5.5 * (1.0 - std::exp(-age / 3.0)); };
-    const auto sigma = [](double age) { return 4.0 * (1.0 - std::exp(-age / 2.3)); };
-    const auto ageAt = [&](double step) { return growthAge(options.rate, step, options.total); };
-    const double now = ageAt(options.step), normal = options.ofFull ? ageAt(options.total) : now;
-    const double top = mean(normal) + 3.0 * sigma(normal);
-    if (!(top > 0.0))
+    const PlaneOfParticles plane(options);
+    if (!(plane.top() > 0.0))
         return thicknessVoxels;
-    const double perMean = thicknessVoxels / top;
-    const double solid = std::min(thicknessVoxels, perMean * (mean(now) - mean(ageAt(since))));
-    const double level = cellVoxels ? std::max(thinnestLevel, perMean * mean(normal) / normal) : 1.0;
-    const double age = solid / level;
+    const double level = cellVoxels ? plane.level(thicknessVoxels) : 1.0;
+    if (level < 1.0)
+        return thicknessVoxels;
+    const double perMean = thicknessVoxels / plane.top();
+    const double grown = plane.mean(options.age()) - plane.mean(growthAge(options.rate, since, options.total));
+    // The highest columns stand 6 to 15 levels above the line of the mean velocity.
+    const double age = std::min(thicknessVoxels, perMean * grown) / level;
     return std::max(thicknessVoxels, level * (3.334 * age + 8.0 + 0.12 * age));
 }
 
@@ -241,16 +256,16 @@ VoxelGrowthReport coatByVoxelGrowth(Workpiece& work, const std::string& material
     Columns columns;
     double levelVoxels = 0.0;
     if (porous) {
-        const LevelScale levels = ballisticLevels(
-            growth, thicknessVoxels, lattice.cell * growth.magnification / scale.voxelSize);
+        const LevelScale levels =
+            ballisticLevels(growth, thicknessVoxels, lattice.cell * growth.magnification / scale.voxelSize);
         levelVoxels = levels.levelVoxels;
-        columns = porousColumns(lattice, withRelief(work, lattice, growth, levelVoxels), levels, report, progress);
+        columns = porousColumns(lattice, withRelief(work, lattice, growth, levelVoxels), levels, scale.voxelSize,
+                                report, progress);
     } else {
         const bool seesRelief = growth.options.model == GrowthModel::relaxation && volume.layerCount() > 0;
         const double top = seesRelief ? expectedScale(growth.options).top() : 0.0;
-        columns = compactColumns(
-            lattice, top > 0.0 ? withRelief(work, lattice, growth, thicknessVoxels / top) : growth, thicknessVoxels,
-            scale.voxelSize, report, progress);
+        columns = compactColumns(lattice, top > 0.0 ? withRelief(work, lattice, growth, thicknessVoxels / top) : growth,
+                                 thicknessVoxels, scale.voxelSize, report, progress);
         levelVoxels = thicknessVoxels * report.statistics.levelFactor;
     }
     report.statistics.levelUm = levelVoxels / scale.voxelsPerUm();

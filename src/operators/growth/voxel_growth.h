@@ -18,8 +18,11 @@ namespace patina {
 /// thickness (GrowthMap) for coat().
 constexpr double thinnestVoxelGrowth = 4.0;
 
-/// Whether a coat of a growth model belongs in the voxel lattice: all but ST, from thinnestVoxelGrowth on.
-bool growsInVoxels(const VolumeScale& scale, double thicknessUm, GrowthModel model);
+/// Whether a coat of a growth model belongs in the voxel lattice: all but ST, from thinnestVoxelGrowth on; BD only where
+/// its particles are at least about a voxel high (as drawn; by a closed form within 6 per cent from an age of 4 on).
+/// Voxels cannot hold the pores of thinner ones; as heights of cells they keep thickness, colour and grain.
+/// \param cubes  as VoxelGrowth::cubes: particles are then no lower than a voxel
+bool growsInVoxels(const VolumeScale& scale, double thicknessUm, const GrowthOptions& options, bool cubes);
 
 /// One coat's growth.
 struct VoxelGrowth {
@@ -49,8 +52,8 @@ struct LevelScale {
 /// How a coat of BD of a thickness (voxels as drawn; the largest, as coat() understands it) is made of particles of
 /// `cellVoxels`. Solid per area is what it is on surface cells: thickness * mean / (mean + 3 sigma) of the model's
 /// height, for cubes as that many monolayers of cells, otherwise as the monolayers of the step, each as thick as it
-/// takes, whatever the voxels (but no thinner than 1/16 of one; then fewer arrive). Where levels are thinner than voxels
-/// a voxel takes the state of the level its centre lies in.
+/// takes, whatever the voxels (but no thinner than 1/16 of one; then fewer arrive). Where a factor makes levels thinner
+/// than voxels (growsInVoxels() keeps whole coats of them out) a voxel takes the state of the level its centre lies in.
 LevelScale ballisticLevels(const VoxelGrowth& growth, double thicknessVoxels, double cellVoxels);
 
 /// About how high a coat's grown layer will stand at its highest, voxels: never lower than the thickness. BD's pores lift

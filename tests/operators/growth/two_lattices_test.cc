@@ -7,6 +7,7 @@
 #include "optics/colour.h"
 #include "optics/layer_stack.h"
 #include "optics/material_library.h"
+#include "support/correlation_length.h"
 #include "support/test_surfaces.h"
 #include "volume/nest_grids.h"
 #include "volume/stack_probe.h"
@@ -147,38 +148,6 @@ TEST(TwoLattices, solidMassPerAreaIsTheSameInEveryDirection) {
     }
 }
 
-/// Distance at which the autocorrelation of the thickness over a plate falls to 1/e; in sides of the plate.
-double correlationLength(const test::Piece& piece, double side) {
-    constexpr int n = 112;
-    const StackProbe probe(*piece.volume);
-    std::vector<double> field(n * n);
-    const auto at = [&](int i) { return side * (0.1 + 0.8 * (i + 0.5) / n); };
-    for (int y = 0; y < n; ++y)
-        for (int x = 0; x < n; ++x)
-            probe.read({at(x), at(y), 0.0}, {0, 0, 1}, &field[std::size_t(y * n + x)]);
-    double mean = 0.0;
-    for (const double f : field)
-        mean += f / (n * n);
-    const auto covariance = [&](int shift) {
-        double sum = 0.0;
-        for (int y = 0; y < n; ++y)
-            for (int x = 0; x + shift < n; ++x) {
-                sum += (field[std::size_t(y * n + x)] - mean) * (field[std::size_t(y * n + x + shift)] - mean);
-                sum += (field[std::size_t(x * n + y)] - mean) * (field[std::size_t((x + shift) * n + y)] - mean);
-            }
-        return sum / (2.0 * n * (n - shift));
-    };
-    const double goal = covariance(0) * std::exp(-1.0);
-    double last = covariance(0);
-    for (int shift = 1; shift < n / 2; ++shift) {
-        const double here = covariance(shift);
-        if (here < goal)
-            return 0.8 * (shift - 1 + (last - goal) / (last - here)) / n;
-        last = here;
-    }
-    return 0.4;
-}
-
 // One, two and four voxels to a cell, as 256, 512 and 1024 along the longest side are to cells of 1/256 of it.
 TEST(TwoLattices, patternsHaveTheSameGrainAtAnyVoxelSize) {
     constexpr double side = 24.0;
@@ -189,8 +158,8 @@ TEST(TwoLattices, patternsHaveTheSameGrainAtAnyVoxelSize) {
         growth.options.firstSeeds = 1e-2;
         growth.options.patch = 4;
         for (const bool byCells : {true, false}) {
-            // Voxels sample the levels of a porous layer: where these are thinner, its top is found a few levels lower or
-            // higher, which adds grain (docs/growth.md).
+            // What stands in voxels are particles, each of its own; a column's solid is then a number of them, not the
+            // height of an envelope (docs/growth.md). Scripts get voxels only where particles are that large.
             if (!byCells && model == GrowthModel::ballisticDeposition)
                 continue;
             double length[3];
@@ -204,7 +173,7 @@ TEST(TwoLattices, patternsHaveTheSameGrainAtAnyVoxelSize) {
                     coatByCells(*piece, thickness, growth, 1.0);
                 else
                     growOn(*piece, thickness, growth, 1.0);
-                length[n] = side * correlationLength(*piece, side);
+                length[n] = test::correlationLength(*piece->volume, side);
                 RecordProperty(growthModelName(model) + (byCells ? "_cells_" : "_voxels_") + std::to_string(fine),
                                std::to_string(length[n]));
             }
