@@ -38,8 +38,8 @@ double newSurface(const std::vector<float*>& nest, openvdb::Index voxel, double 
     return surface + budget / metalHardness;
 }
 
-// The same for a whole leaf, layer by layer in plain loops over all its voxels: where the budget is 0, as it is in voxels
-// that are not active, no bit changes.
+// The same for a whole leaf, layer by layer in plain loops over all its voxels: where the budget is 0, as it is in
+// voxels that are not active, no bit changes.
 void walkDown(const std::vector<float*>& nest, const LayerHardness& hardness, double metalHardness,
               float* __restrict budget, float* __restrict surface) {
     for (std::size_t k = nest.size() - 1; k >= 1; --k) {
@@ -80,8 +80,8 @@ class EvenShift {
           thickness_(static_cast<float>(thickness)), sampler_(work.volume.grids()) {}
 
     // Fills budget[position] for all voxels of leaf n, 0 where they are not active. Within reach of the present and the
-    // new surface, and one cell more, every voxel has its own slope; farther away, where no crossing can come by a shift
-    // of this kind, a group of 2³ shares that of its first voxel (slopes vary by half a percent along a surface).
+    // new surface, and one cell more, every voxel has its own slope; farther away, where no crossing can come by a
+    // shift of this kind, a group of 2³ shares that of its first voxel (slopes vary by half a percent along a surface).
     void read(std::size_t n, float* budget) const {
         const SlopeReader slopes(lattice_, leaves_, n, inverseVoxelSize_);
         const SurfaceMesh& surface = binding_.surface();
@@ -136,7 +136,8 @@ class EvenShift {
         };
         for (unsigned w = 0; w < 8; ++w) {
             const unsigned first = w & ~1u;
-            shares[w] = active[w] & far[w] & spread(active[first] & far[first]) & ~(spread(outside[first]) ^ outside[w]);
+            shares[w] =
+                active[w] & far[w] & spread(active[first] & far[first]) & ~(spread(outside[first]) ^ outside[w]);
             if (w == first)
                 shares[w] &= ~firsts;
         }

@@ -68,8 +68,8 @@ bool metalBetween(const NestSampler& sampler, double voxelSize, const Imath::V3d
 }
 
 // Carries distances on from the voxels that see open surface to those that metal hides from it, from voxel to voxel
-// round the metal (26 neighbours: up to a twelfth too long), and from there a little into the metal, whose voxels are the
-// far ends of cells that hold layers. No way leads through metal.
+// round the metal (26 neighbours: up to a twelfth too long), and from there a little into the metal, whose voxels are
+// the far ends of cells that hold layers. No way leads through metal.
 void goRoundMetal(const std::vector<const FloatLeaf*>& leaves, const std::vector<const FloatLeaf*>& floor,
                   const OpenAir& air, float furthest, Reach& reach) {
     const LeafLattice lattice(leaves);
@@ -94,7 +94,8 @@ void goRoundMetal(const std::vector<const FloatLeaf*>& leaves, const std::vector
                 (fromMetal && floor[leaf]->buffer().data()[pos] > 0.f))
                 continue;
             const std::size_t to = 512 * static_cast<std::size_t>(leaf) + pos;
-            const float longer = away + std::sqrt(static_cast<float>(step.x() * step.x() + step.y() * step.y() + step.z() * step.z()));
+            const float longer =
+                away + std::sqrt(static_cast<float>(step.x() * step.x() + step.y() * step.y() + step.z() * step.z()));
             if (longer < reach.away[to] && longer <= furthest) {
                 reach.away[to] = longer;
                 reach.thickness[to] = reach.thickness[at];

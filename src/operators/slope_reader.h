@@ -71,8 +71,8 @@ class SlopeReader {
         return i - (v < static_cast<float>(i));
     }
 
-    // The values at a cell's corners; i, j, k from one leaf below this one. Without a branch on whether the cell lies in
-    // one leaf, which a third of them do not.
+    // The values at a cell's corners; i, j, k from one leaf below this one. Without a branch on whether the cell lies
+    // in one leaf, which a third of them do not.
     void gather(int i, int j, int k, unsigned n, float (&c)[8][batch]) const {
         if (unsigned(i) >= 23u || unsigned(j) >= 23u || unsigned(k) >= 23u) {
             for (auto& corner : c)

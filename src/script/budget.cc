@@ -214,14 +214,14 @@ Budget estimateBudget(const Program& program, const SurfaceMesh& surface, const 
     budget.volumeBytes =
         (nodes.leaves * bytesPerLeaf + nodes.lower * bytesPerLower + nodes.upper * bytesPerUpper) * (levelSets + 1.0);
     // Of maps a closest point of 12 bytes is held for every texel, and of all of them together some bands of rows. Per
-    // texel of a row: displacement, diffuse, base colour, metallic, roughness and normal, height, fold and marks; a lobe
-    // for every level set; thickness and coverage for every layer.
+    // texel of a row: displacement, diffuse, base colour, metallic, roughness and normal, height, fold and marks; a
+    // lobe for every level set; thickness and coverage for every layer.
     const double size = mapResolution, layers = levelSets - 1.0;
     const double bytesPerTexel = 36.0 + 6.0 * levelSets + 6.0 * layers;
     constexpr double rowsHeld = 160.0;
     budget.mapBytes = size * (size * 12.0 + std::min(size, rowsHeld) * bytesPerTexel);
-    // While it runs: a closest point per voxel, then what the operators need or the maps, triangles with their trees, the
-    // program and its libraries. The last two as measured on spheres and the statuette.
+    // While it runs: a closest point per voxel, then what the operators need or the maps, triangles with their trees,
+    // the program and its libraries. The last two as measured on spheres and the statuette.
     constexpr double programBytes = 150e6, bytesPerTriangle = 270.0, bytesPerPoint = 12.0;
     const double working = budget.activeVoxels * workingBytesPerVoxel(program, scale);
     const double model = static_cast<double>(surface.triangles.size()) * bytesPerTriangle;

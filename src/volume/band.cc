@@ -77,8 +77,8 @@ double leastClearance(const NestGrids& grids) {
                     if ((x | y | z) >= 0 && x < 8 && y < 8 && z < 8)
                         return !base[n]->isValueOn(openvdb::Index(64 * x + 8 * y + z)) &&
                                base[n]->getValue(openvdb::Index(64 * x + 8 * y + z)) > 0.f;
-                    const std::int32_t number = lattice.at(block.x() + (x >> 3), block.y() + (y >> 3),
-                                                           block.z() + (z >> 3));
+                    const std::int32_t number =
+                        lattice.at(block.x() + (x >> 3), block.y() + (y >> 3), block.z() + (z >> 3));
                     const auto pos = static_cast<openvdb::Index>(64 * (x & 7) + 8 * (y & 7) + (z & 7));
                     return number < 0 || (!base[number]->isValueOn(pos) && base[number]->getValue(pos) > 0.f);
                 };

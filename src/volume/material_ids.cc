@@ -27,9 +27,8 @@ class LeafGradient {
             const std::int32_t number = lattice.at(block.x() + i, block.y() + j, block.z() + k);
             return number < 0 ? nullptr : leaves[number]->buffer().data();
         };
-        const float* around[3][2] = {{data(-1, 0, 0), data(1, 0, 0)},
-                                     {data(0, -1, 0), data(0, 1, 0)},
-                                     {data(0, 0, -1), data(0, 0, 1)}};
+        const float* around[3][2] = {
+            {data(-1, 0, 0), data(1, 0, 0)}, {data(0, -1, 0), data(0, 1, 0)}, {data(0, 0, -1), data(0, 0, 1)}};
         std::copy(&around[0][0], &around[0][0] + 6, &around_[0][0]);
     }
 
@@ -53,8 +52,8 @@ class LeafGradient {
     const float* around_[3][2];
 };
 
-// The line of the normal in a voxel: how steep the surface is, and half the line's length times that (both in scene units
-// of phi), so that interfaces are compared by their values alone.
+// The line of the normal in a voxel: how steep the surface is, and half the line's length times that (both in scene
+// units of phi), so that interfaces are compared by their values alone.
 struct NormalLine {
     double slope, half;
 };
@@ -63,8 +62,7 @@ NormalLine normalLine(const Imath::V3d& difference, double voxelSize, double inv
     const Imath::V3d gradient = difference * inverseVoxelSize;
     const double squared = std::max(gradient.length2(), 1e-12), slope = std::sqrt(squared);
     // Half the length of the line is at most half the voxel's diagonal.
-    const double steepest =
-        std::max({std::abs(gradient.x), std::abs(gradient.y), std::abs(gradient.z), 0.5 * slope});
+    const double steepest = std::max({std::abs(gradient.x), std::abs(gradient.y), std::abs(gradient.z), 0.5 * slope});
     return {slope, 0.5 * voxelSize * squared / steepest};
 }
 

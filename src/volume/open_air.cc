@@ -134,7 +134,8 @@ void OpenAir::find(const NestGrids& grids, int top, double voxelSize) {
     if (leaves.empty())
         return;
     std::vector<LeafAir> air(leaves.size());
-    tbb::parallel_for(std::size_t(0), leaves.size(), [&](std::size_t n) { readAir(leaves[n]->buffer().data(), air[n]); });
+    tbb::parallel_for(std::size_t(0), leaves.size(),
+                      [&](std::size_t n) { readAir(leaves[n]->buffer().data(), air[n]); });
 
     // Nodes: 0 is the outside, then the parts of each leaf, then the runs along z of blocks of 8³ that hold no leaf and
     // are air.
@@ -223,8 +224,8 @@ void OpenAir::find(const NestGrids& grids, int top, double voxelSize) {
             int node = firstNode[n];
             forParts(air[n].air, [&](const Mask& part) {
                 for (int voxel = 0; voxel < 512; ++voxel)
-                    if (has(part, voxel) && !inside.isInside(leaves[n]->origin().offsetBy(
-                                                voxel >> 6, (voxel >> 3) & 7, voxel & 7))) {
+                    if (has(part, voxel) &&
+                        !inside.isInside(leaves[n]->origin().offsetBy(voxel >> 6, (voxel >> 3) & 7, voxel & 7))) {
                         join(parent, node, 0);
                         break;
                     }

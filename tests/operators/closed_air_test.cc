@@ -170,7 +170,8 @@ TEST(ClosedAir, AnErosionThatOpensAPoreTakesNothingFromBehindThinMetal) {
     coat(work, "crust", 2.2, nullptr, piece->progress);
     ASSERT_TRUE(OpenAir(*piece->volume).anyClosed());
     const LayerVolume before = piece->volume->clone();
-    // From the crust's top over the channel to the air in the hollow it is some seven voxels; so it is through the metal.
+    // From the crust's top over the channel to the air in the hollow it is some seven voxels; so it is through the
+    // metal.
     erode(work, 9.0, nullptr, {}, piece->progress);
     ASSERT_FALSE(OpenAir(*piece->volume).anyClosed());
     const auto was = before.grids().surface().getConstAccessor(),

@@ -35,8 +35,8 @@ class Budget : public testing::Test {
         SCOPED_TRACE(model + ", " + voxels + " voxels, maps of " + resolution);
         const TemporaryFolder folder;
         folder.file("a.patina", fourLayers);
-        const Arguments run{"run", "a.patina", model, "--voxels", voxels, "--resolution", resolution,
-                            "--threads", "2", "--picture", "0", "-o", "out"};
+        const Arguments run{"run",       "a.patina", model,       "--voxels", voxels, "--resolution", resolution,
+                            "--threads", "2",        "--picture", "0",        "-o",   "out"};
         Arguments dry = run;
         dry.push_back("--dry-run");
         const Outcome said = vdbPatina(dry, folder.path());
