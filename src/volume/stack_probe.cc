@@ -73,7 +73,8 @@ struct StackProbe::Nest {
                 // Outward in steps of at most half a voxel, so that no crossing is stepped over.
                 next = std::min({next, s + 0.5, to});
             }
-            if (std::abs(next - s) <= 1e-12)
+            // A step of Newton's this short ends nearer to the crossing than its square.
+            if (std::abs(next - s) <= 1e-8)
                 return next;
             const double before = s;
             s = next;
