@@ -4,6 +4,7 @@
 #include "displaced_distance.h"
 
 #include "surface/surface_walk.h"
+#include "surface/uv_frame.h"
 
 namespace patina::test {
 
@@ -21,6 +22,8 @@ inline std::vector<double> seamJumps(const SurfaceMesh& surface, const MapImage&
             const int other = walk.behind(t, e);
             if (other < 3 * t + e) // none, or seen from there
                 continue;
+            if (!uvDerivativesOf(surface, t).valid || !uvDerivativesOf(surface, other / 3).valid)
+                continue; // one of them has no place in the map
             const Imath::V2d a0 = uv(t, e), a1 = uv(t, e + 1), b1 = uv(other / 3, other % 3), b0 = uv(other / 3, other % 3 + 1);
             if (a0 == b0 && a1 == b1)
                 continue;
