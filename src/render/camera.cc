@@ -3,6 +3,7 @@
 #include "base/errors.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace patina {
@@ -144,6 +145,38 @@ CameraRay Camera::ray(float x, float y, const Imath::V2f& lens) const {
     const float r = lensRadius_ * std::sqrt(lens.x), phi = 2.f * float(M_PI) * lens.y;
     const Imath::V3f aside = right_ * (r * std::cos(phi)) + upward_ * (r * std::sin(phi));
     return {position_ + aside, (direction * focusDistance_ - aside).normalized()};
+}
+
+void Camera::rays(const float* x, const float* y, const float* lensU, const float* lensV, std::size_t count,
+                  CameraRays& rays) const {
+    for (auto* numbers : {&rays.directionX, &rays.directionY, &rays.directionZ})
+        numbers->resize(count);
+    rays.origins.clear();
+    if (hasLens()) {
+        for (std::size_t i = 0; i < count; ++i) {
+            const CameraRay one = ray(x[i], y[i], {lensU[i], lensV[i]});
+            rays.origins.push_back(one.origin);
+            rays.directionX[i] = one.direction.x;
+            rays.directionY[i] = one.direction.y;
+            rays.directionZ[i] = one.direction.z;
+        }
+        return;
+    }
+    rays.origins.push_back(position_);
+    const auto spread = [&](float forward, float right, float upward, float* to) {
+        for (std::size_t i = 0; i < count; ++i)
+            to[i] = forward + right * ((2.f * x[i] - 1.f) * halfWidth_) + upward * ((1.f - 2.f * y[i]) * halfHeight_);
+    };
+    float *dx = rays.directionX.data(), *dy = rays.directionY.data(), *dz = rays.directionZ.data();
+    spread(forward_.x, right_.x, upward_.x, dx);
+    spread(forward_.y, right_.y, upward_.y, dy);
+    spread(forward_.z, right_.z, upward_.z, dz);
+    for (std::size_t i = 0; i < count; ++i) {
+        const float length = std::sqrt(dx[i] * dx[i] + dy[i] * dy[i] + dz[i] * dz[i]);
+        dx[i] /= length;
+        dy[i] /= length;
+        dz[i] /= length;
+    }
 }
 
 bool Camera::sees(const Imath::V3f& centre, float radius) const {

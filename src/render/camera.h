@@ -15,6 +15,15 @@ struct CameraRay {
     Imath::V3f direction; ///< unit
 };
 
+/// Many of them, number by number. A pinhole's begin all at one place, which is not repeated.
+struct CameraRays {
+    std::vector<float> directionX, directionY, directionZ;
+    std::vector<Imath::V3f> origins; ///< one, or one for each ray
+
+    Imath::V3f origin(std::size_t i) const { return origins.size() == 1 ? origins.front() : origins[i]; }
+    Imath::V3f direction(std::size_t i) const { return {directionX[i], directionY[i], directionZ[i]}; }
+};
+
 /// Where the camera stands relative to the object it looks at.
 struct CameraView {
     UpAxis up = UpAxis::z;
@@ -49,6 +58,9 @@ class Camera {
     /// The ray through a point of the picture: (0, 0) is its top left corner, (1, 1) its bottom right.
     /// \param lens  where on the lens it starts, uniform in 0 … 1 each; without a lens it does not matter
     CameraRay ray(float x, float y, const Imath::V2f& lens = Imath::V2f(0.5f)) const;
+    /// The same for `count` points at once. \param lensU, lensV  not read without a lens
+    void rays(const float* x, const float* y, const float* lensU, const float* lensV, std::size_t count,
+              CameraRays& rays) const;
     bool hasLens() const { return lensRadius_ > 0.f; }
     /// Where a point appears in the picture, in the same coordinates. Only for points in front of the camera.
     Imath::V2f project(const Imath::V3f& point) const;

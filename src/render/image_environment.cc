@@ -51,13 +51,13 @@ Imath::V3f ImageEnvironment::radiance(const Imath::V3f& direction) const {
     const float x = turn * float(panorama_.width) - 0.5f, y = down * float(panorama_.height) - 0.5f;
     const float left = std::floor(x), top = std::floor(y);
     const float fx = x - left, fy = y - top;
-    const auto at = [&](int column, int row) {
-        const int width = panorama_.width;
-        return panorama_.rgb(((column % width) + width) % width, std::clamp(row, 0, panorama_.height - 1));
-    };
-    const int column = int(left), row = int(top);
-    const Imath::V3f above = at(column, row) * (1.f - fx) + at(column + 1, row) * fx;
-    const Imath::V3f below = at(column, row + 1) * (1.f - fx) + at(column + 1, row + 1) * fx;
+    // From -1 to the last: a turn around, and half a pixel. The poles have no other side here.
+    const int width = panorama_.width, last = panorama_.height - 1;
+    const int column = int(left) < 0 ? width - 1 : std::min(int(left), width - 1);
+    const int next = column + 1 < width ? column + 1 : 0;
+    const int upper = std::clamp(int(top), 0, last), lower = std::clamp(int(top) + 1, 0, last);
+    const Imath::V3f above = panorama_.rgb(column, upper) * (1.f - fx) + panorama_.rgb(next, upper) * fx;
+    const Imath::V3f below = panorama_.rgb(column, lower) * (1.f - fx) + panorama_.rgb(next, lower) * fx;
     return (above * (1.f - fy) + below * fy) * strength_;
 }
 

@@ -16,8 +16,9 @@ struct RenderOptions {
     int height = 640;
     int samples = 32;          ///< paths per pixel; powers of two are spread most evenly
     int maxDepth = 4;          ///< surfaces a path may visit, 1: direct light only
-    float indirectClamp = 6.f; ///< light that arrives after two or more bounces counts at most this much per path (no
-                               ///< fireflies); 1 is about white
+    /// Light that arrives after two or more bounces counts at most this much per path, 1 is about white: no fireflies,
+    /// but too little light where a sun is seen twice reflected. 0: no bound, and no bias.
+    float indirectClamp = 6.f;
     std::uint64_t seed = 0;
     /// Above 0: samples are taken in rounds (1, 1, 2, 4 … to each pixel) and no round begins that would end after this
     /// many seconds. The picture is then that of `Rendering::samples`, to the bit. 0: all samples.

@@ -25,6 +25,9 @@ class PixelSampler {
     /// Skips to draw number `draw` of this sample, so that bounce n uses the same draws whatever bounce n-1 needed.
     void seek(int draw) { draw_ = draw; }
 
+    /// Draw number `draw` of samples first … last - 1 at once, to the bit what next2() gives.
+    void draw2(int draw, int first, int last, float* u, float* v);
+
     Imath::V2f next2();
     float next1(); ///< the first of next2()
 

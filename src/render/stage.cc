@@ -108,15 +108,12 @@ Stage::Floor Stage::floorAlong(const V3f& origin, const V3f& direction) const {
     return floor;
 }
 
-void Stage::trace(RayScene::Packet& packet) const {
-    for (int i = 0; i < packet.count; ++i)
-        packet.farthest[i] = floorAlong(packet.origin[i], packet.direction[i]).distance;
-    rays_.intersect(packet);
+float Stage::reach(const V3f& origin, const V3f& direction) const {
+    return floorAlong(origin, direction).distance;
 }
 
 StageHit Stage::intersect(const V3f& origin, const V3f& direction, bool indirect, StagePoint& point) const {
-    const float farthest = floorAlong(origin, direction).distance;
-    return meet(rays_.intersect(origin, direction, 0.f, farthest), origin, direction, indirect, point);
+    return meet(rays_.intersect(origin, direction, 0.f, reach(origin, direction)), origin, direction, indirect, point);
 }
 
 StageHit Stage::meet(const std::optional<RayScene::Hit>& hit, const V3f& origin, const V3f& direction, bool indirect,
@@ -169,21 +166,13 @@ void Stage::shadeSurface(const RayScene::Hit& hit, const V3f& direction, bool ba
     point.shading = frameAround(bendTowards(normal, geometric, -direction));
 }
 
-bool Stage::facesFloor(const StagePoint& from, const V3f& direction) const {
-    return scene_.ground && (direction ^ upright_.normal) < -1e-7f && (from.origin ^ upright_.normal) > floorHeight_;
-}
-
-bool Stage::blocked(const StagePoint& from, const V3f& direction) const {
-    constexpr float infinite = std::numeric_limits<float>::infinity();
-    return facesFloor(from, direction) || (table_ && table_->intersect(from.origin, direction, infinite)) ||
-           rays_.occluded(from.origin, direction, 0.f, infinite);
-}
-
-bool Stage::blocked(const StagePoint& from, const V3f& direction, float distance) const {
-    if (scene_.ground && (from.origin ^ upright_.normal) + (direction ^ upright_.normal) * distance < floorHeight_)
-        return true;
-    return (table_ && table_->intersect(from.origin, direction, distance)) ||
-           rays_.occluded(from.origin, direction, 0.f, distance * 0.9999f);
+bool Stage::setBlocks(const StagePoint& from, const V3f& direction, float distance) const {
+    if (scene_.ground) {
+        const float height = from.origin ^ upright_.normal, rising = direction ^ upright_.normal;
+        if (std::isinf(distance) ? rising < -1e-7f && height > floorHeight_ : height + rising * distance < floorHeight_)
+            return true;
+    }
+    return table_ && table_->intersect(from.origin, direction, distance);
 }
 
 float Stage::backdropShare(const V3f& floorPoint) const {

@@ -42,18 +42,19 @@ class Stage {
     /// Whether a point lies inside a closed surface: most ways out of it meet backs first.
     bool isInside(const Imath::V3f& position) const;
 
-    /// `indirect`: not a camera ray, so that the inside of a closed surface means an error of rounding.
-    StageHit intersect(const Imath::V3f& origin, const Imath::V3f& direction, bool indirect, StagePoint& point) const;
-    /// The same for what a ray, traced as far as the floor, met first.
+    /// How far a ray has to be traced: beyond lies the floor, or nothing ever.
+    float reach(const Imath::V3f& origin, const Imath::V3f& direction) const;
+    /// The surface that rays are traced against.
+    const RayScene& rays() const { return rays_; }
+    /// Where a ray ends that met `hit` first, or nothing within its reach. `indirect`: not a camera ray, so that the
+    /// inside of a closed surface means an error of rounding.
     StageHit meet(const std::optional<RayScene::Hit>& hit, const Imath::V3f& origin, const Imath::V3f& direction,
                   bool indirect, StagePoint& point) const;
-    /// Traces rays as intersect() does. \param packet  with count, origins and directions
-    void trace(RayScene::Packet& packet) const;
-    /// Whether a ray to a light far away would end on the floor: known without tracing it.
-    bool facesFloor(const StagePoint& from, const Imath::V3f& direction) const;
-    /// Whether anything stands between the point and a light far away, or one at a distance.
-    bool blocked(const StagePoint& from, const Imath::V3f& direction) const;
-    bool blocked(const StagePoint& from, const Imath::V3f& direction, float distance) const;
+    /// Traces one ray and says where it ends.
+    StageHit intersect(const Imath::V3f& origin, const Imath::V3f& direction, bool indirect, StagePoint& point) const;
+    /// Whether floor or turntable stand between the point and a light at this distance, infinity included: known
+    /// without tracing anything.
+    bool setBlocks(const StagePoint& from, const Imath::V3f& direction, float distance) const;
 
     PatinaBsdf material(const StagePoint& point) const { return scene_.material(point.surface, point.position); }
     float groundAlbedo() const { return scene_.groundAlbedo; }
@@ -81,7 +82,7 @@ class Stage {
     float radius_;      ///< half the diagonal of the box around the surface
     float floorHeight_; ///< along up
     std::optional<Turntable> table_;
-    float clearance_;   ///< rays start this far from what they leave
+    float clearance_; ///< rays start this far from what they leave
     Imath::V3f backdrop_{0.f};
 };
 

@@ -45,6 +45,26 @@ void keepSmallestIndex(const RTCFilterFunctionNArguments* arguments) {
     }
 }
 
+/// Rays beyond the packet's count are switched off, but get numbers that Embree may calculate with.
+void fillQuery(const RayScene::Packet& packet, RTCRay16& query, int* valid) {
+    for (int i = 0; i < RayScene::packetSize; ++i) {
+        const int from = i < packet.count ? i : 0;
+        valid[i] = i < packet.count ? -1 : 0;
+        query.org_x[i] = packet.originX[from];
+        query.org_y[i] = packet.originY[from];
+        query.org_z[i] = packet.originZ[from];
+        query.dir_x[i] = packet.directionX[from];
+        query.dir_y[i] = packet.directionY[from];
+        query.dir_z[i] = packet.directionZ[from];
+        query.tnear[i] = 0.f;
+        query.tfar[i] = packet.farthest[from];
+        query.time[i] = 0.f;
+        query.mask[i] = 0xffffffffu;
+        query.id[i] = static_cast<unsigned>(i);
+        query.flags[i] = 0;
+    }
+}
+
 struct TrianglePoint {
     double u, v;
     double squaredDistance;
@@ -215,33 +235,24 @@ std::optional<RayScene::Hit> RayScene::intersect(const V3f& origin, const V3f& d
     return scene_->hitAt(static_cast<int>(query.hit.primID), query.hit.u, query.hit.v, query.ray.tfar);
 }
 
-void RayScene::intersect(Packet& packet) const {
+void RayScene::intersect(const Packet& packet, std::optional<Hit>* hits) const {
     NearestContext context;
     rtcInitIntersectContext(&context.context);
-    context.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    if (packet.coherent)
+        context.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     alignas(64) int valid[packetSize];
-    alignas(64) RTCRayHit16 query{};
+    alignas(64) RTCRayHit16 query;
+    fillQuery(packet, query.ray, valid);
     for (int i = 0; i < packetSize; ++i) {
-        const int from = i < packet.count ? i : 0;
         context.distance[i] = -1.f;
-        valid[i] = i < packet.count ? -1 : 0;
-        query.ray.org_x[i] = packet.origin[from].x;
-        query.ray.org_y[i] = packet.origin[from].y;
-        query.ray.org_z[i] = packet.origin[from].z;
-        query.ray.dir_x[i] = packet.direction[from].x;
-        query.ray.dir_y[i] = packet.direction[from].y;
-        query.ray.dir_z[i] = packet.direction[from].z;
-        query.ray.tfar[i] = packet.farthest[from];
-        query.ray.mask[i] = 0xffffffffu;
-        query.ray.id[i] = static_cast<unsigned>(i);
         query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
         query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
     rtcIntersect16(valid, scene_->scene, &context.context, &query);
     for (int i = 0; i < packet.count; ++i) {
-        packet.hit[i].reset();
+        hits[i].reset();
         if (query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID)
-            packet.hit[i] =
+            hits[i] =
                 scene_->hitAt(static_cast<int>(query.hit.primID[i]), query.hit.u[i], query.hit.v[i], query.ray.tfar[i]);
     }
 }

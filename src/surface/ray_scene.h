@@ -27,16 +27,24 @@ class RayScene {
     /// The first hit with nearest ≤ distance ≤ farthest, distances in lengths of `direction`. Watertight along edges.
     std::optional<Hit> intersect(const Imath::V3f& origin, const Imath::V3f& direction, float nearest = 0.f,
                                  float farthest = std::numeric_limits<float>::infinity()) const;
-    /// The first hits of up to 16 rays that start near each other and go much the same way, as a camera's do: several
-    /// times the speed of one after the other. Each goes as far as `farthest` says, in lengths of its direction.
+    /// Up to 16 rays that are traced together: several times the speed of one after the other where they start near
+    /// each other and go much the same way, as a camera's do. The last bits of a hit may depend on the company.
     static constexpr int packetSize = 16;
     struct Packet {
         int count = 0;
-        Imath::V3f origin[packetSize], direction[packetSize];
-        float farthest[packetSize];
-        std::optional<Hit> hit[packetSize]; ///< receives what is met
+        bool coherent = false; ///< whether they go much the same way
+        alignas(64) float originX[packetSize], originY[packetSize], originZ[packetSize];
+        alignas(64) float directionX[packetSize], directionY[packetSize], directionZ[packetSize];
+        alignas(64) float farthest[packetSize]; ///< in lengths of the direction
+
+        void set(int ray, const Imath::V3f& origin, const Imath::V3f& direction, float reach) {
+            originX[ray] = origin.x, originY[ray] = origin.y, originZ[ray] = origin.z;
+            directionX[ray] = direction.x, directionY[ray] = direction.y, directionZ[ray] = direction.z;
+            farthest[ray] = reach;
+        }
     };
-    void intersect(Packet& packet) const;
+    /// \param hits  receives what each ray of the packet meets first
+    void intersect(const Packet& packet, std::optional<Hit>* hits) const;
     /// Whether anything is hit between nearest and farthest.
     bool occluded(const Imath::V3f& origin, const Imath::V3f& direction, float nearest, float farthest) const;
 

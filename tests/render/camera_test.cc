@@ -66,6 +66,21 @@ TEST(Camera, rayAndProjectionAgree) {
         }
 }
 
+TEST(Camera, ManyRaysAtOnceAreTheSame) {
+    Camera camera = Camera::aimed({1, 2, 3}, 5.f, {}, 1.5f);
+    const float x[3] = {0.1f, 0.5f, 1.f}, y[3] = {0.9f, 0.25f, 0.f}, u[3] = {0.2f, 0.9f, 0.f}, v[3] = {0.f, 0.3f, 0.7f};
+    for (const float lens : {0.f, 0.3f}) {
+        camera.setLens(lens, 4.f);
+        CameraRays rays;
+        camera.rays(x, y, u, v, 3, rays);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const CameraRay one = camera.ray(x[i], y[i], {u[i], v[i]});
+            EXPECT_EQ(rays.origin(i), one.origin);
+            EXPECT_LT((rays.direction(i) - one.direction).length(), 1e-7f);
+        }
+    }
+}
+
 TEST(Camera, azimuthZeroSeesTheFrontAndUpIsUp) {
     const Imath::Box3f box(V3f(-1.f), V3f(1.f));
     CameraView view;

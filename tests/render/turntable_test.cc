@@ -5,10 +5,14 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace patina {
 namespace {
 
 using Imath::V3f;
+
+constexpr float infinite = std::numeric_limits<float>::infinity();
 
 TEST(Turntable, IsMetOnItsTopAndOnItsSide) {
     const Turntable table({1, 0, 2}, {0, 0, 1}, 3.f, 0.5f);
@@ -42,9 +46,9 @@ TEST(Turntable, StandsOnTheFloorOfTheStage) {
     EXPECT_LT(point.position.z, table - 0.03f);
     // From the floor beside the table, light that comes low across it is blocked; from above it is not.
     ASSERT_EQ(stage.intersect({1.7f, 0, 3}, {0, 0, -1}, false, point), StageHit::ground);
-    EXPECT_TRUE(stage.blocked(point, V3f(-1.f, 0.f, 0.02f).normalized()));
-    EXPECT_FALSE(stage.blocked(point, {0, 0, 1}));
-    EXPECT_FALSE(stage.blocked(point, V3f(-1.f, 0.f, 0.02f).normalized(), 0.05f)) << "a light nearer than the table";
+    EXPECT_TRUE(stage.setBlocks(point, V3f(-1.f, 0.f, 0.02f).normalized(), infinite));
+    EXPECT_FALSE(stage.setBlocks(point, {0, 0, 1}, infinite));
+    EXPECT_FALSE(stage.setBlocks(point, V3f(-1.f, 0.f, 0.02f).normalized(), 0.05f)) << "a light nearer than the table";
 }
 
 } // namespace

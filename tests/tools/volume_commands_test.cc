@@ -2,6 +2,7 @@
 
 #include "base/hash.h"
 #include "program.h"
+#include "render/exr_picture.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <sstream>
 
@@ -144,13 +146,16 @@ TEST_F(VolumeCommands, AMissingGridIsNamedAndNothingIsBaked) {
 std::string twoQuads(const std::string& firstU, const std::string& lastU) {
     return "v 0 0 0\nv 0.01 0 0\nv 0.02 0 0\nv 0 0.01 0\nv 0.01 0.01 0\nv 0.02 0.01 0\n"
            "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
-           "vt " + firstU + " 0\nvt " + lastU + " 0\nvt " + lastU + " 1\nvt " + firstU + " 1\n"
+           "vt " +
+           firstU + " 0\nvt " + lastU + " 0\nvt " + lastU + " 1\nvt " + firstU +
+           " 1\n"
            "f 1/1 2/2 5/3 4/4\nf 2/5 3/6 6/7 5/8\n";
 }
 
 TEST_F(VolumeCommands, SeveralUvTilesGiveSeveralFiles) {
     folder.file("quads.obj", twoQuads("1", "2"));
-    const Arguments words = small({"run", "ball.patina", "quads.obj", "-o", "tiles", "--scheme", "none", "--picture", "0"});
+    const Arguments words =
+        small({"run", "ball.patina", "quads.obj", "-o", "tiles", "--scheme", "none", "--picture", "0"});
     const Outcome outcome = run(words);
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
     const auto files = filesIn(folder.path() / "tiles");
@@ -170,10 +175,10 @@ TEST_F(VolumeCommands, SeveralUvTilesGiveSeveralFiles) {
 TEST_F(VolumeCommands, ChartsThatCannotBeBakedAreToldBeforeTheRun) {
     const struct {
         std::string obj, error;
-    } cases[] = {{twoQuads("0", "1"), "faces 1 and 2"},                               // on each other
-                 {twoQuads("1", "0"), "faces 1 and 2"},                               // the same, mirrored
-                 {twoQuads("0.5", "1.5"), "face 2: its UV (0.5, 0) lies outside"},    // in two tiles
-                 {twoQuads("-1", "0"), "face 2: its UV (-1, 0) lies outside"},        // in none that has a number
+    } cases[] = {{twoQuads("0", "1"), "faces 1 and 2"},                            // on each other
+                 {twoQuads("1", "0"), "faces 1 and 2"},                            // the same, mirrored
+                 {twoQuads("0.5", "1.5"), "face 2: its UV (0.5, 0) lies outside"}, // in two tiles
+                 {twoQuads("-1", "0"), "face 2: its UV (-1, 0) lies outside"},     // in none that has a number
                  {twoQuads("11", "12"), "face 2: its UV (11, 0) lies outside"}};
     for (const auto& one : cases) {
         folder.file("quads.obj", one.obj);
@@ -217,6 +222,37 @@ TEST_F(VolumeCommands, RenderMakesAPictureWithOrWithoutTheModel) {
           Arguments{"--closeup", "5,5,5,0.01"}, Arguments{"--closeup", "0.05,0.05,0,0"}, Arguments{"--from", "air"}})
         EXPECT_EQ(small(words).exitCode, 2) << words[1];
     EXPECT_EQ(small({"--camera", "0,0,0.01"}).exitCode, 1); // inside the metal
+}
+
+TEST_F(VolumeCommands, RenderSaysWhatItCannotMakeAPictureOf) {
+    const auto tried = [&](Arguments words) {
+        words.insert(words.begin(), {"render", "ball/ball.vdb", "--samples", "1", "-o", "no"});
+        return run(words);
+    };
+    EXPECT_EQ(run({"render", "ball/ball.vdb", "--samples", "0"}).exitCode, 2);
+    // Whatever the volume is: its size is known to be too large before anything is read.
+    folder.file("broken.vdb", "this is no volume");
+    const Outcome large = run({"render", "broken.vdb", "--picture", "16384", "-o", "no"});
+    EXPECT_EQ(large.exitCode, 5) << large.err;
+    EXPECT_THAT(large.err, HasSubstr("more than the 4 allowed"));
+    EXPECT_EQ(run({"render", "broken.vdb", "--picture", "64", "-o", "no"}).exitCode, 1);
+    const Outcome inside = tried({"--picture", "32", "--camera", "0,0,0.01"});
+    EXPECT_EQ(inside.exitCode, 1);
+    EXPECT_THAT(inside.err, HasSubstr("inside the object"));
+
+    Image wide(64, 20, 3, 1.f), hole(64, 32, 3, 1.f), good = hole;
+    hole.at(5, 3)[1] = std::numeric_limits<float>::quiet_NaN();
+    writeExrPicture(wide, nullptr, folder.path() / "wide.exr");
+    writeExrPicture(hole, nullptr, folder.path() / "hole.exr");
+    writeExrPicture(good, nullptr, folder.path() / "good.exr");
+    const Outcome wrongSize = tried({"--picture", "32", "--light", "wide.exr"});
+    EXPECT_EQ(wrongSize.exitCode, 1);
+    EXPECT_THAT(wrongSize.err, HasSubstr("64 × 20"));
+    const Outcome notANumber = tried({"--picture", "32", "--light", "hole.exr"});
+    EXPECT_EQ(notANumber.exitCode, 1);
+    EXPECT_THAT(notANumber.err, HasSubstr("column 5, row 3"));
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "no/ball.png"));
+    EXPECT_EQ(tried({"--picture", "32", "--light", "good.exr", "--clamp", "0"}).exitCode, 0);
 }
 
 TEST_F(VolumeCommands, ProbeReadsTheStackAtPoints) {

@@ -20,6 +20,7 @@ struct Arguments {
 void renderVolume(const Arguments& arguments, const Options& given, Console& console) {
     if (given.pictureSize == 0)
         throw Error(ExitCode::commandLine, "--picture", "a picture of 0 pixels", "give its longer side in pixels");
+    checkPictureSize(given);
     const ExistingVolume input = loadExisting(arguments.volume, arguments.model, given, console);
     const Options options = withUpOf(arguments.volume, given);
     const std::string name = std::filesystem::path(arguments.volume).stem().string();

@@ -215,6 +215,12 @@ void addRenderOptions(CLI::App& app, Options& options) {
         ->check(numberAboveZero())
         ->type_name("SECONDS")
         ->group("Picture");
+    app.add_option("--clamp", options.clamp,
+                   "Light that takes two bounces or more counts at most this much per path, 1 is about white (default "
+                   "6; 0: no bound, true on average, more fireflies)")
+        ->check(numberWithin(0.0, 1e6))
+        ->type_name("X")
+        ->group("Picture");
     app.add_option("--aspect", options.aspect, "Width over height (default: the subject's)")
         ->check(numberWithin(0.05, 20.0))
         ->type_name("X")

@@ -77,6 +77,7 @@ struct Options {
     bool exr = false;
     std::string viewTransform = "filmic";
     double exposureStops = 0.0;
+    double clamp = 6.0;   ///< bound on light of two bounces or more; 0: none
     double seconds = 0.0; ///< to render in; 0: as long as all samples take
     std::shared_ptr<const View> view; ///< one camera for all pictures of a series; null: each its own
 

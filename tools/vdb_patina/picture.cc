@@ -95,13 +95,13 @@ struct ShownSurface {
     const SurfaceMesh& base() const { return diced ? diced->surface : underVoxels; }
 };
 
-void checkSize(const View& view, const Options& options) {
-    const double need = bytesPerPixel * view.width * view.height / (1024.0 * 1024.0 * 1024.0);
+void checkSize(int width, int height, const Options& options) {
+    const double need = bytesPerPixel * width * height / (1024.0 * 1024.0 * 1024.0);
     const double allowed = options.budgetGiB > 0.0 ? options.budgetGiB : 4.0;
     if (need > allowed)
         throw Error(ExitCode::budget, "--picture",
-                    fmt::format("a picture of {} × {} pixels takes {:.1f} GiB, more than the {:g} allowed", view.width,
-                                view.height, need, allowed),
+                    fmt::format("a picture of {} × {} pixels takes {:.1f} GiB, more than the {:g} allowed", width,
+                                height, need, allowed),
                     "make it smaller");
 }
 
@@ -114,27 +114,34 @@ void sayWhereVoxelsAreCoarse(const LayerVolume& volume, const View& view, const 
     if (across < 2.0)
         return;
     const LayerVolume::Provenance& made = volume.provenance;
-    console.notice(fmt::format("the volume's voxels are {:.2g} pixels wide in this close-up; for finer grain, run {} on "
-                               "{} again with --region-at {} --voxels {} and render that",
-                               across, made.scriptName.empty() ? "the script" : "'" + made.scriptName + "'",
-                               made.model.empty() ? "the model" : "'" + made.model + "'", options.closeUp, pixels));
+    console.notice(
+        fmt::format("the volume's voxels are {:.2g} pixels wide in this close-up; for finer grain, run {} on "
+                    "{} again with --region-at {} --voxels {} and render that",
+                    across, made.scriptName.empty() ? "the script" : "'" + made.scriptName + "'",
+                    made.model.empty() ? "the model" : "'" + made.model + "'", options.closeUp, pixels));
 }
 
 } // namespace
 
+void checkPictureSize(const Options& options) {
+    const double aspect = options.aspect > 0.0 ? options.aspect : !options.closeUp.empty() ? 1.0 : widestAspect;
+    checkSize(options.pictureSize, int(options.pictureSize * std::min(aspect, 1.0 / aspect)), options);
+}
+
 void exposePicture(const RenderScene& scene, const View& view, const FeaturesAt& featuresAt, const Options& options,
                    const std::filesystem::path& file, const std::string& description, Console& console) {
-    checkSize(view, options);
+    checkSize(view.width, view.height, options);
     RenderOptions settings;
     settings.width = view.width;
     settings.height = view.height;
     settings.samples = options.samples;
     settings.seconds = options.seconds;
+    settings.indirectClamp = float(options.clamp);
     const Lights lights =
         lightsOf(options, view.from.azimuthDegrees, scene.setting ? *scene.setting : scene.surface->bounds());
     const Rendering rendering = render(scene, view.camera, lights, settings, console);
-    console.info(fmt::format("{} rays traced in {:.2f} s ({:.2f} s of the processors)", rendering.rays, rendering.seconds,
-                             rendering.processorSeconds));
+    console.info(fmt::format("{} rays traced in {:.2f} s ({:.2f} s of the processors)", rendering.rays,
+                             rendering.seconds, rendering.processorSeconds));
     if (options.seconds > 0.0)
         console.info(fmt::format("{} samples per pixel", rendering.samples));
 
@@ -179,7 +186,7 @@ void writePicture(const LayerVolume& volume, const Model& model, const StackOpti
     const View view = options.view ? *options.view : viewOf(options, subject);
     if (!options.view)
         sayWhereVoxelsAreCoarse(volume, view, options, console);
-    checkSize(view, options);
+    checkSize(view.width, view.height, options);
     if (isInsideVolume(volume, turn.back(view.camera.position())))
         throw RunError("camera", "it stands inside the object",
                        "move it away: a larger distance, or another direction");

@@ -14,6 +14,10 @@
 
 namespace patina::tool {
 
+/// \throws Error (over budget) where even the narrowest picture of the size asked for is too large for memory: known
+/// before anything is read
+void checkPictureSize(const Options& options);
+
 /// Renders a scene and writes NAME.png and, where asked for, NAME.exr beside it: all pictures of the program end here.
 /// \param featuresAt  what the EXR's features say of a point of the scene's surface
 /// \throws Error (over budget) for a picture too large for memory

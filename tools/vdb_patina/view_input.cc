@@ -36,14 +36,14 @@ std::vector<double> numbersOf(const std::string& option, const std::string& text
     return numbers;
 }
 
-// The picture takes the object's proportions, within those of a photograph.
 float aspectOf(const SurfaceMesh& surface, UpAxis up, float elevationDegrees) {
     const Imath::V3f size = surface.bounds().size();
     const float height = up == UpAxis::y ? size.y : size.z;
     const float depth = up == UpAxis::y ? size.z : size.y;
     const float tilt = elevationDegrees / float(degrees);
     const float seenHeight = height * std::cos(tilt) + depth * std::sin(std::abs(tilt));
-    return std::clamp(std::max(size.x, 0.5f * depth) / std::max(seenHeight, 1e-6f * size.x), 0.7f, 1.8f);
+    return std::clamp(std::max(size.x, 0.5f * depth) / std::max(seenHeight, 1e-6f * size.x), narrowestAspect,
+                      widestAspect);
 }
 
 struct CloseUp {

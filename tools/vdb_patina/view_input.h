@@ -17,6 +17,9 @@
 
 namespace patina::tool {
 
+/// Pictures take the object's proportions between these, those of a photograph: width over height.
+constexpr float narrowestAspect = 0.7f, widestAspect = 1.8f;
+
 /// What the camera is to show, in the picture's own coordinates.
 struct Subject {
     const SurfaceMesh* surface = nullptr;
