@@ -167,9 +167,10 @@ void writePicture(const LayerVolume& volume, const Model& model, const StackOpti
     const bool ofVolume = options.from == "volume";
     if (ofVolume)
         surface.takeVolume(volume, model);
-    SurfaceMesh sketch = ofVolume ? surface.shown : sketchOf(volume, model, colours);
+    // Whatever is shown: the same camera for mesh and volume.
+    SurfaceMesh sketch = sketchOf(volume, model, colours);
     float highest = 0.f; // above the base
-    for (std::size_t v = 0; !ofVolume && v < sketch.positions.size(); ++v)
+    for (std::size_t v = 0; v < sketch.positions.size(); ++v)
         highest = std::max(highest, (sketch.positions[v] - model.surface.positions[v]).length());
     Turn turn;
     if (model.region) {
@@ -196,7 +197,7 @@ void writePicture(const LayerVolume& volume, const Model& model, const StackOpti
     if (!ofVolume)
         surface.shown = surface.diced->displacer->displaced(shader.vertexHeights());
     turn.apply(surface.shown);
-    surface.shown.closed = sketch.closed;
+    surface.shown.closed = sketch.closed && (!ofVolume || surface.shown.closed);
 
     RenderScene scene;
     scene.surface = &surface.shown;
