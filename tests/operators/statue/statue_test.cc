@@ -98,8 +98,9 @@ void expectAgreement(int voxels, SubdivisionScheme scheme) {
     const auto radii = accessibleRadii(*piece->volume, surface, 0, 20.0, false, piece->progress);
     for (const double r : {2.0, 4.0, 8.0, 16.0}) {
         const Agreement found = agreement(*piece, surface, radii, r);
-        EXPECT_GT(found.agree, r < 3.0 ? 0.985 : 0.99) << r; // 0.995 is asked for
-        EXPECT_GT(found.close, 0.995) << r;
+        // On the scan the faint films that are dropped beside its sharp edges are 0.8 % of the points at r = 2.
+        EXPECT_GT(found.agree, r < 3.0 && scheme == SubdivisionScheme::none ? 0.99 : 0.995) << r;
+        EXPECT_GT(found.close, 0.997) << r;
     }
 }
 
