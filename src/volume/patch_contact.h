@@ -48,8 +48,10 @@ class PatchContact {
 };
 
 inline ContactPoints::ContactPoints(const SurfacePatch& patch) {
-    // A patch on a sharp convex edge is blunter than the edge and would stand out of its faces: its own point serves.
-    const bool sharp = !patch.crease && patch.bentness() > 0.3f && patch.shape[0] + patch.shape[3] + patch.shape[5] > 0.f;
+    // Beside a sharp convex edge a patch is turned and blunter than the surface, and its circle would stand out of the
+    // faces: its own point serves. Bent mostly outwards tells it from the patches beside a concave crease.
+    const float bentness = patch.bentness(), outwards = patch.shape[0] + patch.shape[3] + patch.shape[5];
+    const bool sharp = !patch.crease && bentness > 0.1f && outwards > 0.5f * bentness;
     const float far = sharp ? 0.f : std::min(patch.reach, furthest);
     if (patch.crease) {
         const Imath::V3f along(patch.shape[0], patch.shape[1], patch.shape[2]);

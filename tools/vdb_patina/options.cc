@@ -216,8 +216,7 @@ void addRenderOptions(CLI::App& app, Options& options) {
         ->type_name("SECONDS")
         ->group("Picture");
     app.add_option("--clamp", options.clamp,
-                   "Light that takes two bounces or more counts at most this much per path, 1 is about white (default "
-                   "6; 0: no bound, true on average, more fireflies)")
+                   "Most that light of two bounces or more adds to a path (default 6; 0: no bound, more fireflies)")
         ->check(numberWithin(0.0, 1e6))
         ->type_name("X")
         ->group("Picture");
