@@ -18,15 +18,6 @@ namespace {
 using Imath::V3f;
 using Imath::V3i;
 
-RenderScene aloneOf(const SurfaceMesh& surface, const PatinaBsdf& bsdf) {
-    RenderScene scene;
-    scene.surface = &surface;
-    scene.material = [bsdf](const SurfacePoint&, const V3f&) { return bsdf; };
-    scene.ground = false;
-    scene.background = V3f(-1.f); // marks pixels that the object does not cover
-    return scene;
-}
-
 Lights uniform(float radiance, std::optional<KeyLight> key = {}) {
     return Lights(std::make_shared<UniformEnvironment>(V3f(radiance)), key);
 }
@@ -60,7 +51,7 @@ TEST(PathFaults, BoundOnIndirectLightDarkensAndZeroIsNone) {
         options.maxDepth = 30;
         options.indirectClamp = bound;
         Progress quiet;
-        return meanInside(render(aloneOf(bumpy, lambert(V3f(1.f))), camera, uniform(40.f), options, quiet).image);
+        return meanInside(render(sceneOf(bumpy, lambert(V3f(1.f))), camera, uniform(40.f), options, quiet).image);
     };
     const double free = meanOf(0.f);
     EXPECT_NEAR(free / 40.0, 1.0, 0.02);
@@ -83,7 +74,7 @@ TEST(PathFaults, ShadowTerminatorOnCoarseNormalsFollowsTheCosine) {
     const Camera camera = Camera::framed(coarse.positions, view, 1.f);
     Progress quiet;
     const Image image =
-        render(aloneOf(coarse, lambert(V3f(0.8f))), camera, uniform(0.f, key), squareOf(size, 64), quiet).image;
+        render(sceneOf(coarse, lambert(V3f(0.8f))), camera, uniform(0.f, key), squareOf(size, 64), quiet).image;
     double error = 0.0;
     int lit = 0, blackened = 0, leaking = 0;
     for (int y = 0; y < size; ++y)
@@ -177,7 +168,7 @@ TEST(PathFaults, LayeredSphereAgreesWithQuadratureToHalfAPercent) {
     constexpr int size = 64;
     const Camera camera = Camera::framed(sphere.positions, view, 1.f);
     Progress quiet;
-    const Image image = render(aloneOf(sphere, bsdf), camera, uniform(1.f), squareOf(size, 1024), quiet).image;
+    const Image image = render(sceneOf(sphere, bsdf), camera, uniform(1.f), squareOf(size, 1024), quiet).image;
     for (const double place : {0.0, 0.5, 0.8}) {
         double mean = 0.0, expected = 0.0;
         int count = 0;
@@ -206,7 +197,7 @@ TEST(PathFaults, LayeredSphereAgreesWithQuadratureToHalfAPercent) {
 // Camera rays go in packets, and rounds of a time-limited picture end where packets do.
 TEST(PathFaults, RoundsOfSamplesGiveTheBitsOfAllAtOnce) {
     const SurfaceMesh sphere = sphereMesh(40, 1.f, {0, 0, 1});
-    RenderScene scene = aloneOf(sphere, copper());
+    RenderScene scene = sceneOf(sphere, copper());
     scene.ground = true;
     const Camera camera = Camera::framed(sphere.positions, {}, 1.f);
     Progress quiet;

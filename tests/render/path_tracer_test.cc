@@ -18,15 +18,6 @@ using Imath::V3f;
 
 constexpr float pi = float(M_PI);
 
-RenderScene sceneOf(const SurfaceMesh& surface, const PatinaBsdf& bsdf) {
-    RenderScene scene;
-    scene.surface = &surface;
-    scene.material = [bsdf](const SurfacePoint&, const V3f&) { return bsdf; };
-    scene.ground = false;
-    scene.background = V3f(-1.f); // marks pixels that the object does not cover
-    return scene;
-}
-
 RenderOptions small(int size, int samples) {
     RenderOptions options;
     options.width = options.height = size;

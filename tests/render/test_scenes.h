@@ -2,6 +2,7 @@
 // Surfaces and materials whose pictures are known in closed form.
 
 #include "optics/patina_bsdf.h"
+#include "render/scene.h"
 #include "surface/mesh.h"
 
 #include <cmath>
@@ -55,6 +56,16 @@ inline PatinaBsdf copper(float alpha = 0.2f) {
     look.lobes[0].edgeColour = Imath::V3f(1.f);
     look.lobes[0].alpha = alpha;
     return PatinaBsdf(look);
+}
+
+/// A surface of one material, alone.
+inline RenderScene sceneOf(const SurfaceMesh& surface, const PatinaBsdf& bsdf) {
+    RenderScene scene;
+    scene.surface = &surface;
+    scene.material = [bsdf](const SurfacePoint&, const Imath::V3f&) { return bsdf; };
+    scene.ground = false;
+    scene.background = Imath::V3f(-1.f); // marks pixels that the object does not cover
+    return scene;
 }
 
 } // namespace patina

@@ -124,14 +124,7 @@ TEST(Accessibility, InASlotFloorAndWallsAreAsTheClosedFormsSay) {
     const double w = 16.0;
     for (const double d : {6.0, 14.0}) {
         const auto slot = test::volumeOf(test::slot(w, d), 40);
-        const Errors errors = compare(*slot, 30.0, [=](const V3d& p) {
-            if (std::abs(p.y) > 10.0 || std::abs(p.x) > 12.0 || p.z > -1.5)
-                return -1.0;
-            const double x0 = 0.5 * w - std::abs(p.x), z = p.z + d;
-            if (z < x0) // floor
-                return x0 <= d ? x0 : (x0 * x0 + d * d) / (2.0 * d);
-            return std::min(z, 0.5 * w);
-        });
+        const Errors errors = compare(*slot, 30.0, [=](const V3d& p) { return test::slotRadius(w, d, p); });
         EXPECT_LT(errors.worst, 0.65) << "depth " << d << " at " << errors.where.x << ' ' << errors.where.z;
         EXPECT_LT(errors.beyondHalf, 0.01);
     }

@@ -3,8 +3,7 @@
 
 #include "field_test_shapes.h"
 #include "operators/fields/surface_voxels.h"
-#include "volume/closing.h"
-#include "volume/leaf_lattice.h"
+#include "support/closed_levels.h"
 
 #include <gtest/gtest.h>
 
@@ -20,29 +19,22 @@ using Imath::V3d;
 int wrong(const LayerVolume& volume, double r, const std::function<double(const V3d&)>& truth, bool global = false) {
     Progress progress;
     const SurfaceVoxels surface = findSurfaceVoxels(volume, 0);
-    LayerVolume closed = volume.clone();
     ClosingOptions options;
     options.radius = r;
     options.global = global;
-    const Closing closing = closeInterface(closed, 0, options, progress);
-    const auto grid = closed.grids().base->deepCopy();
-    std::size_t at = 0;
-    for (FloatLeaf* leaf : leavesOf(grid->tree()))
-        for (auto voxel = leaf->beginValueOn(); voxel; ++voxel)
-            voxel.setValue(closing.level[at++]);
-    const auto before = closed.grids().base->getConstAccessor(), after = grid->getConstAccessor();
+    const test::ClosedLevels closed(volume, options, progress);
     int found = 0, smaller = 0, larger = 0;
     for (std::size_t i = 0; i < surface.size(); ++i) {
         const V3d p = test::toObject(V3d(surface.feet[i]));
         const double expected = truth(p);
         if (expected < 0.0 || std::abs(expected - r) <= std::max(0.5, 0.01 * r))
             continue;
-        const openvdb::Coord x(surface.voxels[i].x, surface.voxels[i].y, surface.voxels[i].z);
-        const bool alone = before.getValue(x) == after.getValue(x);
+        const float filled = closed.filled(surface.voxels[i]);
+        const bool alone = filled == 0.f;
         (expected < r ? smaller : larger) += 1;
         if (alone != (expected > r) && ++found < 4)
             ADD_FAILURE() << "r " << r << ", truth " << expected << " at " << p << (alone ? ": alone" : ": filled by ")
-                          << (alone ? 0.f : before.getValue(x) - after.getValue(x));
+                          << filled;
     }
     EXPECT_GT(smaller + larger, 300) << r;
     return found;
@@ -109,16 +101,7 @@ TEST(ClosingTruths, FloorAndWallsOfASlot) {
     for (const double d : {6.0, 14.0}) {
         const auto slot = test::volumeOf(test::slot(w, d), 40);
         for (const double r : {3.0, 5.0, 7.3, 9.0})
-            EXPECT_EQ(wrong(*slot, r,
-                            [=](const V3d& p) {
-                                if (std::abs(p.y) > 10.0 || std::abs(p.x) > 12.0 || p.z > -1.5)
-                                    return -1.0;
-                                const double x0 = 0.5 * w - std::abs(p.x), z = p.z + d;
-                                if (z < x0) // floor
-                                    return x0 <= d ? x0 : (x0 * x0 + d * d) / (2.0 * d);
-                                return std::min(z, 0.5 * w);
-                            }),
-                      0)
+            EXPECT_EQ(wrong(*slot, r, [=](const V3d& p) { return test::slotRadius(w, d, p); }), 0)
                 << d;
     }
 }

@@ -72,6 +72,16 @@ inline SignedDistance slot(double w, double d) {
     return [w, d](const Imath::V3d& p) { return std::max(p.z, -std::max(std::abs(p.x) - 0.5 * w, -d - p.z)); };
 }
 
+/// The largest sphere that touches that slot's floor or walls at p; -1 where its rim or an end is too near to say.
+inline double slotRadius(double w, double d, const Imath::V3d& p) {
+    if (std::abs(p.y) > 10.0 || std::abs(p.x) > 12.0 || p.z > -1.5)
+        return -1.0;
+    const double x0 = 0.5 * w - std::abs(p.x), z = p.z + d;
+    if (z < x0) // floor
+        return x0 <= d ? x0 : (x0 * x0 + d * d) / (2.0 * d);
+    return std::min(z, 0.5 * w);
+}
+
 /// A V-groove along y with its apex at the origin; `half` is the angle between its wall and the vertical, radians.
 inline SignedDistance groove(double half) {
     return [half](const Imath::V3d& p) { return p.z * std::sin(half) - std::abs(p.x) * std::cos(half); };

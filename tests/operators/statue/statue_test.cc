@@ -3,9 +3,8 @@
 #include "operators/coat.h"
 #include "operators/erode.h"
 #include "operators/fields/accessibility.h"
+#include "support/closed_levels.h"
 #include "support/statue.h"
-#include "volume/closing.h"
-#include "volume/leaf_lattice.h"
 #include "volume/stack_probe.h"
 
 #include <gtest/gtest.h>
@@ -65,20 +64,12 @@ struct Agreement {
 // Miller's two versions of offset at every surface voxel: the closing by r, as `offset` applies it, leaves the voxel's
 // level alone bit for bit; the largest sphere that touches the voxel's foot is at least as large as r.
 Agreement agreement(test::Piece& piece, const SurfaceVoxels& surface, const std::vector<float>& radii, double r) {
-    LayerVolume closed = piece.volume->clone();
     ClosingOptions options;
     options.radius = r * piece.volume->scale().voxelSize;
-    const Closing closing = closeInterface(closed, 0, options, piece.progress);
-    const auto grid = closed.grids().base->deepCopy();
-    std::size_t at = 0;
-    for (FloatLeaf* leaf : leavesOf(grid->tree()))
-        for (auto voxel = leaf->beginValueOn(); voxel; ++voxel)
-            voxel.setValue(closing.level[at++]);
-    const auto before = closed.grids().base->getConstAccessor(), after = grid->getConstAccessor();
+    const test::ClosedLevels closed(*piece.volume, options, piece.progress);
     Agreement result;
     for (std::size_t i = 0; i < surface.size(); ++i) {
-        const openvdb::Coord x(surface.voxels[i].x, surface.voxels[i].y, surface.voxels[i].z);
-        const bool alone = before.getValue(x) == after.getValue(x), fits = radii[i] >= r;
+        const bool alone = closed.filled(surface.voxels[i]) == 0.f, fits = radii[i] >= r;
         result.filled += !alone;
         result.agree += alone == fits;
         result.close += alone == fits || std::abs(radii[i] - r) <= 1.0;
