@@ -12,9 +12,9 @@
 
 namespace patina {
 
-/// How deep a surface may stand into a ball that touches it elsewhere, voxels: more than the errors of patches on smooth
-/// surfaces (0.005), so that a convex body stops no ball. It is the same for the closing by balls of one radius and for
-/// the largest ball at a point, which therefore answer alike.
+/// How deep a surface may stand into a ball that touches it elsewhere, voxels: more than the errors of patches on
+/// smooth surfaces (0.005), so that a convex body stops no ball. It is the same for the closing by balls of one radius
+/// and for the largest ball at a point, which therefore answer alike.
 constexpr float contactTolerance = 0.02f;
 
 /// The points of a patch that may touch a ball: its own, and eight on a circle around it of no more than half a voxel.
@@ -26,9 +26,7 @@ struct ContactPoints {
 
     static constexpr float furthest = 0.5f;
     /// No contact is nearer than `distance` to a point whose squared distance from the patch's own is more than this.
-    static float squaredReach(float distance) {
-        return (distance + 1.01f * furthest) * (distance + 1.01f * furthest);
-    }
+    static float squaredReach(float distance) { return (distance + 1.01f * furthest) * (distance + 1.01f * furthest); }
 
     explicit ContactPoints(const SurfacePatch& patch);
 };

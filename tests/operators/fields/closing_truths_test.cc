@@ -14,8 +14,8 @@ namespace {
 
 using Imath::V3d;
 
-/// Closes by r and counts the surface voxels whose sphere, where it is not negative, is smaller than r by more than half
-/// a voxel and 1 % and whose level is left alone bit for bit, or larger by as much and not left alone.
+/// Closes by r and counts the surface voxels whose sphere, where it is not negative, is smaller than r by more than
+/// half a voxel and 1 % and whose level is left alone bit for bit, or larger by as much and not left alone.
 int wrong(const LayerVolume& volume, double r, const std::function<double(const V3d&)>& truth, bool global = false) {
     Progress progress;
     const SurfaceVoxels surface = findSurfaceVoxels(volume, 0);
@@ -60,11 +60,10 @@ TEST(ClosingTruths, AGap) {
     for (const double width : {6.0, 15.3}) {
         const auto gap = test::volumeOf([=](const V3d& p) { return 0.5 * width - std::abs(p.z); }, 34);
         for (const double r : {0.5 * width - 0.51, 0.5 * width + 0.51})
-            EXPECT_EQ(wrong(*gap, r,
-                            [=](const V3d& p) {
-                                return std::max(std::abs(p.x), std::abs(p.y)) < 14.0 ? 0.5 * width : -1.0;
-                            }),
-                      0)
+            EXPECT_EQ(
+                wrong(*gap, r,
+                      [=](const V3d& p) { return std::max(std::abs(p.x), std::abs(p.y)) < 14.0 ? 0.5 * width : -1.0; }),
+                0)
                 << width;
     }
 }
@@ -101,8 +100,7 @@ TEST(ClosingTruths, FloorAndWallsOfASlot) {
     for (const double d : {6.0, 14.0}) {
         const auto slot = test::volumeOf(test::slot(w, d), 40);
         for (const double r : {3.0, 5.0, 7.3, 9.0})
-            EXPECT_EQ(wrong(*slot, r, [=](const V3d& p) { return test::slotRadius(w, d, p); }), 0)
-                << d;
+            EXPECT_EQ(wrong(*slot, r, [=](const V3d& p) { return test::slotRadius(w, d, p); }), 0) << d;
     }
 }
 
