@@ -1,6 +1,7 @@
 #include "export/bake.h"
 
 #include "export/bake_rows.h"
+#include "export/seam_heights.h"
 #include "export/texel_map.h"
 #include "export/texel_sampler.h"
 #include "optics/colour.h"
@@ -33,7 +34,7 @@ constexpr int bandsHeld = 5;
 struct RowSums {
     std::size_t covered = 0, supersampled = 0, green = 0;
     double points = 0.0, unreadable = 0.0, foldsAsked = 0.0, folds = 0.0; // of folds: texels
-    double baseOffset = 0.0, baseOffset2 = 0.0;                          // of points
+    double baseOffset = 0.0, baseOffset2 = 0.0;                           // of points
     float maxDisplacement = 0.f;
     V3d colour{0.0};
 };
@@ -43,11 +44,11 @@ struct RowSums {
 class TileBake {
   public:
     TileBake(const SurfaceWalk& walk, const TexelSampler& sampler, const TangentFrames& frames,
-             const BakeOptions& options, const std::vector<std::uint8_t>& pointsAcross, ColourSpace space, double heightUnits,
-             TexelMap texels, BakeRows& rows)
+             const BakeOptions& options, const std::vector<std::uint8_t>& pointsAcross, ColourSpace space,
+             double heightUnits, const SeamHeights& seams, std::size_t tile, TexelMap texels, BakeRows& rows)
         : surface_(walk.surface()), sampler_(sampler), frames_(frames), options_(options), across_(pointsAcross),
-          space_(space), heightUnits_(heightUnits), texels_(std::move(texels)), rows_(rows), sums_(options.resolution),
-          supersampled_(static_cast<std::size_t>(options.resolution) * rows.rows()) {}
+          space_(space), heightUnits_(heightUnits), seams_(seams), tile_(tile), texels_(std::move(texels)), rows_(rows),
+          sums_(options.resolution), supersampled_(static_cast<std::size_t>(options.resolution) * rows.rows()) {}
 
     void run(MapSink& sink, Progress& progress, double done, double share) {
         const int size = texels_.size, bands = (size + bandRows - 1) / bandRows;
@@ -59,9 +60,9 @@ class TileBake {
             eachRow(band - 2, bands, [&](int y) { normalRow(y); });
             eachRow(band - 3, bands, [&](int y) { gutterRow(y); });
             if (const int first = (band - 3) * bandRows; first >= 0)
-                tbb::parallel_for(0, maps, [&](int m) {
-                    sink.write(m, rows_.row(m, first), std::min(bandRows, size - first));
-                }, tbb::simple_partitioner());
+                tbb::parallel_for(
+                    0, maps, [&](int m) { sink.write(m, rows_.row(m, first), std::min(bandRows, size - first)); },
+                    tbb::simple_partitioner());
             progress.update(done + share * (band + 1) / (bands + 3));
         }
     }
@@ -75,18 +76,21 @@ class TileBake {
         TexelValues values;
     };
 
-    template <typename Row> void eachRow(int band, int bands, const Row& row) {
+    template <typename Row>
+    void eachRow(int band, int bands, const Row& row) {
         if (band >= 0 && band < bands)
             tbb::parallel_for(band * bandRows, std::min(texels_.size, (band + 1) * bandRows), row);
     }
     const SurfacePoint& pointOf(int y, int x) const {
         return texels_.points[static_cast<std::size_t>(y) * texels_.size + x];
     }
-    template <typename List, typename Key> static auto firstFrom(const List& list, std::size_t texel, const Key& key) {
+    template <typename List, typename Key>
+    static auto firstFrom(const List& list, std::size_t texel, const Key& key) {
         return std::lower_bound(list.begin(), list.end(), texel,
                                 [&](const auto& item, std::size_t value) { return key(item) < value; });
     }
-    template <typename Use> void eachRimTexel(int y, const Use& use) const {
+    template <typename Use>
+    void eachRimTexel(int y, const Use& use) const {
         const std::size_t start = static_cast<std::size_t>(y) * texels_.size;
         for (auto rim = firstFrom(texels_.rim, start, [](const RimTexel& r) { return r.texel; });
              rim != texels_.rim.end() && rim->texel < start + texels_.size; ++rim)
@@ -118,13 +122,19 @@ class TileBake {
             putInSpace(rim.border, work.values);
             rows_.put(y, x, work.values);
         });
+        seamRow(y);
+    }
+
+    // Both sides of a seam show one height.
+    void seamRow(int y) {
+        seams_.eachOfRow(tile_, y, [&](int x, double height) { rows_.putHeight(y, x, height); });
     }
 
     // Texels beside a chart are read in the chart's frame.
     void putInSpace(const SurfacePoint& owner, TexelValues& values) const {
         if (options_.vectorDisplacement && options_.vectorSpace != VectorSpace::object)
-            values.vector = toSpace(options_.vectorSpace, frames_.interpolatedAt(owner, normalAt(surface_, owner)),
-                                    values.vector);
+            values.vector =
+                toSpace(options_.vectorSpace, frames_.interpolatedAt(owner, normalAt(surface_, owner)), values.vector);
     }
 
     void count(const TexelValues& values, RowSums& sums) const {
@@ -163,6 +173,7 @@ class TileBake {
             putInSpace(point, work.values);
             rows_.replace(y, x, work.values);
         }
+        seamRow(y);
     }
 
     // The normal of the displaced surface P + h N, from its derivatives by u and v, in the frame of the tangents.
@@ -192,16 +203,17 @@ class TileBake {
             if (length > 0.0 && displaced.dot(normal) > 0.0) {
                 displaced /= length;
                 const TangentFrames::Frame frame = frames_.at(owner, normal);
-                encoded = V3d(displaced.dot(frame.tangent), displaced.dot(frame.bitangent), displaced.dot(normal)) * 0.5 +
-                          V3d(0.5);
+                encoded =
+                    V3d(displaced.dot(frame.tangent), displaced.dot(frame.bitangent), displaced.dot(normal)) * 0.5 +
+                    V3d(0.5);
             }
         }
         rows_.putNormal(y, x, V3f(encoded));
         return turned;
     }
 
-    // Whether the height jumps to a neighbour: by four times their distance (76 degrees) and more than half a voxel, which
-    // nothing that the lattice holds as one sheet does.
+    // Whether the height jumps to a neighbour: by four times their distance (76 degrees) and more than half a voxel,
+    // which nothing that the lattice holds as one sheet does.
     bool isWall(int y, int x, const UvDerivatives& uv) const {
         const double own = rows_.height(y, x), least = 0.5 * sampler_.voxelSize() * heightUnits_;
         const auto jumps = [&](int ny, int nx, const V3d& along) {
@@ -256,6 +268,8 @@ class TileBake {
     const std::vector<std::uint8_t>& across_;
     ColourSpace space_;
     double heightUnits_; // of the maps' heights per scene unit of the volume
+    const SeamHeights& seams_;
+    std::size_t tile_;
     TexelMap texels_;
     BakeRows& rows_;
     std::vector<RowSums> sums_;
@@ -281,7 +295,8 @@ class MemorySink : public MapSink {
     void write(int m, const void* rows, int count) override {
         MapImage& map = maps[first_ + m];
         const std::size_t rowBytes = map.pixelBytes() * map.size;
-        char* pixels = map.isHalf ? reinterpret_cast<char*>(map.halves.data()) : reinterpret_cast<char*>(map.floats.data());
+        char* pixels =
+            map.isHalf ? reinterpret_cast<char*>(map.halves.data()) : reinterpret_cast<char*>(map.floats.data());
         std::memcpy(pixels + rowBytes * filled_[m], rows, rowBytes * count);
         filled_[m] += count;
     }
@@ -329,9 +344,13 @@ BakeSummary bakeInto(MapSink& sink, const LayerVolume& volume, const SurfaceMesh
         options.displacementUnits * (options.keepExaggeration ? 1.0 : 1.0 / volume.scale().exaggeration);
     RowSums sums;
     std::size_t overlapping = 0;
+    TexelMap map = makeTexelMap(walk, options.resolution, options.gutter, summary.tiles.at(0));
+    const SeamHeights seams(walk, sampler, across, summary.tiles, map, options.gutter);
+    progress.checkpoint();
     for (std::size_t i = 0; i < summary.tiles.size(); ++i) {
-        TileBake tile(walk, sampler, frames, options, across, space, heightUnits,
-                      makeTexelMap(walk, options.resolution, options.gutter, summary.tiles[i]), rows);
+        if (i > 0)
+            map = makeTexelMap(walk, options.resolution, options.gutter, summary.tiles[i]);
+        TileBake tile(walk, sampler, frames, options, across, space, heightUnits, seams, i, std::move(map), rows);
         progress.checkpoint();
         std::vector<MapInfo> maps = rows.maps();
         if (summary.tiles.size() > 1)
@@ -360,9 +379,9 @@ BakeSummary bakeInto(MapSink& sink, const LayerVolume& volume, const SurfaceMesh
     }
     const double texels = static_cast<double>(std::max<std::size_t>(1, sums.covered));
     summary.texels = sums.covered;
-    summary.coveredFraction = static_cast<double>(sums.covered) /
-                              (static_cast<double>(options.resolution) * options.resolution *
-                               static_cast<double>(std::max<std::size_t>(1, summary.tiles.size())));
+    summary.coveredFraction =
+        static_cast<double>(sums.covered) / (static_cast<double>(options.resolution) * options.resolution *
+                                             static_cast<double>(std::max<std::size_t>(1, summary.tiles.size())));
     summary.unreadableFraction = sums.unreadable / std::max(1.0, sums.points);
     summary.voxelisationRms = std::sqrt(sums.baseOffset2 / std::max(1.0, sums.points));
     summary.voxelisationMax = sums.baseOffset;

@@ -119,8 +119,7 @@ void BakeRows::put(int y, int x, const TexelValues& values) {
 
 void BakeRows::replace(int y, int x, const TexelValues& values) {
     const std::size_t texel = at(y, x);
-    height_[texel] = static_cast<float>(values.height * displacementScale_);
-    set(displacement_, texel, height_[texel]);
+    putHeight(y, x, values.height);
     set(diffuse_, texel, values.diffuse);
     for (int k = 0; k <= layers_; ++k)
         set(lobes_ + k, texel, values.lobes[k]);
@@ -145,6 +144,11 @@ void BakeRows::putFold(int y, int x, float share) {
     fold_[at(y, x)] = share;
     if (foldMask_ >= 0)
         set(foldMask_, at(y, x), share);
+}
+
+void BakeRows::putHeight(int y, int x, double height) {
+    height_[at(y, x)] = static_cast<float>(height * displacementScale_);
+    set(displacement_, at(y, x), height_[at(y, x)]);
 }
 
 void BakeRows::putNormal(int y, int x, const V3f& encoded) { set(normal_, at(y, x), V3d(encoded)); }

@@ -26,6 +26,8 @@ class BakeRows {
     void put(int y, int x, const TexelValues& values);
     /// The same anew, but for visible(), which other rows may be reading.
     void replace(int y, int x, const TexelValues& values);
+    /// The height alone of a texel that was put. \param height  scene units of the volume, as drawn
+    void putHeight(int y, int x, double height);
     void putNormal(int y, int x, const Imath::V3f& encoded);
     void copyTexel(int toY, int toX, int fromY, int fromX);
 

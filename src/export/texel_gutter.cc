@@ -18,19 +18,9 @@ namespace {
 // The nearest point of a chart's border to a texel.
 struct Nearest {
     float distance = std::numeric_limits<float>::max(); // squared, texels
-    int code = -1;                                       // 3 triangle + edge
-    float along = 0.f;                                   // 0…1 from the edge's first corner
+    int code = -1;                                      // 3 triangle + edge
+    float along = 0.f;                                  // 0…1 from the edge's first corner
 };
-
-// Whether the triangle behind an edge lies beside it in the UVs too.
-bool isBorder(const SurfaceWalk& walk, int triangle, int edge) {
-    const int other = walk.behind(triangle, edge);
-    if (other < 0)
-        return true;
-    const SurfaceMesh& surface = walk.surface();
-    const auto uv = [&](int t, int corner) { return surface.uvs[surface.triangleUvs[t][corner % 3]]; };
-    return uv(triangle, edge) != uv(other / 3, other % 3 + 1) || uv(triangle, edge + 1) != uv(other / 3, other % 3);
-}
 
 void nearTexels(const SurfaceMesh& surface, int code, int firstRow, int lastRow, const TexelMap& map,
                 std::vector<Nearest>& band) {
@@ -86,13 +76,11 @@ void makeRim(const SurfaceWalk& walk, TexelMap& map) {
         if (tileOf(surface, t) != map.tile)
             continue;
         for (int edge = 0; edge < 3; ++edge) {
-            if (!isBorder(walk, t, edge))
+            if (walk.behind(t, edge) >= 0 && !isSeam(walk, t, edge))
                 continue;
             const double ya = texelPlace(surface, t, edge, map.size, map.tile).y;
             const double yb = texelPlace(surface, t, (edge + 1) % 3, map.size, map.tile).y;
-            const auto band = [&](double y) {
-                return static_cast<int>(std::clamp(y, 0.0, map.size - 1.0)) / bandRows;
-            };
+            const auto band = [&](double y) { return static_cast<int>(std::clamp(y, 0.0, map.size - 1.0)) / bandRows; };
             for (int b = band(std::min(ya, yb) - rimTexels); b <= band(std::max(ya, yb) + rimTexels); ++b)
                 inBand[b].push_back(3 * t + edge);
         }
@@ -115,6 +103,14 @@ void makeRim(const SurfaceWalk& walk, TexelMap& map) {
 }
 
 } // namespace
+
+bool isSeam(const SurfaceWalk& walk, int triangle, int edge) {
+    const int other = walk.behind(triangle, edge);
+    const SurfaceMesh& surface = walk.surface();
+    const auto uv = [&](int t, int corner) { return surface.uvs[surface.triangleUvs[t][corner % 3]]; };
+    return other >= 0 &&
+           (uv(triangle, edge) != uv(other / 3, other % 3 + 1) || uv(triangle, edge + 1) != uv(other / 3, other % 3));
+}
 
 void addGutter(const SurfaceWalk& walk, int gutterTexels, TexelMap& map) {
     map.rim.clear();

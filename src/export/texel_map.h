@@ -58,6 +58,9 @@ void checkCharts(const SurfaceMesh& surface, int size);
 /// Fills rim and gutter of a map whose points are known.
 void addGutter(const SurfaceWalk& walk, int gutterTexels, TexelMap& map);
 
+/// Whether the triangle behind an edge (SurfaceWalk::behind) lies elsewhere in the UVs.
+bool isSeam(const SurfaceWalk& walk, int triangle, int edge);
+
 /// UV of a corner in texels from the first texel's centre, y downwards.
 Imath::V2d texelPlace(const SurfaceMesh& surface, int triangle, int corner, int size, const Imath::V2i& tile);
 /// The tile of a triangle: that of its middle.

@@ -93,6 +93,27 @@ void TexelSampler::readPoint(const SurfacePoint& point, bool askFolds, bool want
     sums.alpha2 += alpha * alpha;
 }
 
+template <typename Use>
+void TexelSampler::eachPoint(const SurfacePoint& middle, int across, const Use& use) const {
+    if (across <= 1)
+        return use(middle);
+    const UvDerivatives uv = uvDerivativesOf(surface_, middle.triangle);
+    for (int j = 0; j < across; ++j)
+        for (int i = 0; i < across; ++i) {
+            const double x = ((i + 0.5) / across - 0.5) / resolution_, y = ((j + 0.5) / across - 0.5) / resolution_;
+            use(walk_.from(middle, uv.du * x + uv.dv * y));
+        }
+}
+
+double TexelSampler::height(const SurfacePoint& middle, int across, Scratch& scratch) const {
+    scratch.thickness.resize(std::max(layers_, 1));
+    double sum = 0.0;
+    eachPoint(middle, across, [&](const SurfacePoint& point) {
+        sum += probe_.read(positionAt(surface_, point), normalAt(surface_, point), scratch.thickness.data()).height;
+    });
+    return sum / std::max(1, across * across);
+}
+
 void TexelSampler::read(const SurfacePoint& middle, int across, bool askFolds, Scratch& scratch,
                         TexelValues& out) const {
     scratch.thickness.resize(std::max(layers_, 1));
@@ -106,16 +127,8 @@ void TexelSampler::read(const SurfacePoint& middle, int across, bool askFolds, S
     out.fields.assign(fields_.size(), 0.0);
     out.lobes.assign(layers_ + 1, V3d(0.0));
     Sums sums;
-    if (across <= 1) {
-        readPoint(middle, askFolds, false, scratch, out, sums);
-    } else {
-        const UvDerivatives uv = uvDerivativesOf(surface_, middle.triangle);
-        for (int j = 0; j < across; ++j)
-            for (int i = 0; i < across; ++i) {
-                const double x = ((i + 0.5) / across - 0.5) / resolution_, y = ((j + 0.5) / across - 0.5) / resolution_;
-                readPoint(walk_.from(middle, uv.du * x + uv.dv * y), askFolds, true, scratch, out, sums);
-            }
-    }
+    eachPoint(middle, across,
+              [&](const SurfacePoint& point) { readPoint(point, askFolds, across > 1, scratch, out, sums); });
     const double share = 1.0 / out.points;
     out.height *= share;
     out.vector *= share;

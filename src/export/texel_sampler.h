@@ -16,9 +16,10 @@ namespace patina {
 /// Means over a texel's points.
 struct TexelValues {
     int points = 0, unreadable = 0, folds = 0;
-    double baseOffset = 0.0, baseOffset2 = 0.0; ///< of the voxels' base from the surface, voxels: largest, sum of squares
-    int visible = 0; ///< the outermost layer at most points, 0: the metal
-    double height = 0.0; ///< scene units of the volume, as drawn
+    double baseOffset = 0.0,
+           baseOffset2 = 0.0; ///< of the voxels' base from the surface, voxels: largest, sum of squares
+    int visible = 0;          ///< the outermost layer at most points, 0: the metal
+    double height = 0.0;      ///< scene units of the volume, as drawn
     Imath::V3d vector{0.0};
     std::vector<double> thicknessUm;
     std::vector<double> coverage; ///< [0] of the bare metal, [k] of layer k; their sum is 1
@@ -31,10 +32,10 @@ struct TexelValues {
 /// Reads a volume for its maps; safe from any thread, each with a Scratch of its own.
 ///
 /// Relief below a texel. A lobe of GGX (or Beckmann) width alpha is the light of facets whose slopes have the mean
-/// square alpha²; relief that no map shows tilts these facets by a further slope s, the gradient of the height along the
-/// surface, less its mean over the texel, which the maps do show. Independent slopes add by their squares:
-/// alpha'² = alpha² + E|s - E s|², isotropic as roughness maps are (Olano and Baker 2010, LEAN mapping, whose covariance
-/// is replaced by half its trace). `roughness` is the root of alpha'.
+/// square alpha²; relief that no map shows tilts these facets by a further slope s, the gradient of the height along
+/// the surface, less its mean over the texel, which the maps do show. Independent slopes add by their squares: alpha'²
+/// = alpha² + E|s - E s|², isotropic as roughness maps are (Olano and Baker 2010, LEAN mapping, whose covariance is
+/// replaced by half its trace). `roughness` is the root of alpha'.
 class TexelSampler {
   public:
     TexelSampler(const LayerVolume& volume, const SurfaceWalk& walk, const StackOptics& optics,
@@ -54,7 +55,13 @@ class TexelSampler {
     /// \param across  points along each side of the texel; 1: its middle
     void read(const SurfacePoint& middle, int across, bool askFolds, Scratch& scratch, TexelValues& out) const;
 
+    /// TexelValues::height alone.
+    double height(const SurfacePoint& middle, int across, Scratch& scratch) const;
+
   private:
+    /// The points of a texel, in order.
+    template <typename Use>
+    void eachPoint(const SurfacePoint& middle, int across, const Use& use) const;
     struct Sums {
         Imath::V3d slope{0.0};
         double slope2 = 0.0, alpha2 = 0.0;

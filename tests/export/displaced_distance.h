@@ -30,9 +30,10 @@ struct DistanceFigures {
 
 /// Both directions: points of the displaced mesh to the interface, and of the interface to the displaced mesh. The voxels'
 /// base lies beside the mesh where the lattice cuts an edge, and displacement, a difference from the base, does not hold
-/// that: the mesh is first moved on to the base, along the normal. `meshAsItIs` is without.
+/// that: the mesh is first moved on to the base, along the normal. `meshAsItIs` is without. `fineTexels`: from the mesh, where
+/// a texel is no wider than a voxel; stretched UVs make wider ones, which cannot hold what lies between their middles.
 struct DisplacedDistance {
-    DistanceFigures meshToVolume, volumeToMesh, meshAsItIs;
+    DistanceFigures meshToVolume, volumeToMesh, meshAsItIs, fineTexels;
 };
 
 inline DistanceFigures figuresOf(std::vector<float>& distances, std::size_t masked) {
@@ -128,11 +129,16 @@ inline DisplacedDistance measureDisplaced(const LayerVolume& volume, const Surfa
         values.erase(end, values.end());
         return masked;
     };
-    const auto toVolume = [&](const std::vector<Imath::V3f>& from) {
+    const auto isWide = [&](std::size_t triangle) {
+        const UvDerivatives uv = uvDerivativesOf(surface, static_cast<int>(triangle));
+        return std::max(uv.du.length(), uv.dv.length()) / heights.size > voxel;
+    };
+    const auto toVolume = [&](const std::vector<Imath::V3f>& from, bool onlyFine = false) {
         distances.resize(faces.size());
         tbb::parallel_for(std::size_t(0), faces.size(), [&](std::size_t f) {
             const Imath::V3i& face = faces[f];
-            if (folded[face.x] || folded[face.y] || folded[face.z]) {
+            if (folded[face.x] || folded[face.y] || folded[face.z] ||
+                (onlyFine && isWide(f / (std::size_t(dice) * dice)))) {
                 distances[f] = -1.f;
                 return;
             }
@@ -148,6 +154,7 @@ inline DisplacedDistance measureDisplaced(const LayerVolume& volume, const Surfa
     };
     result.meshToVolume = toVolume(positions);
     result.meshAsItIs = toVolume(asItIs);
+    result.fineTexels = toVolume(positions, true);
 
     std::vector<openvdb::Vec3s> points;
     std::vector<openvdb::Vec4I> quads;

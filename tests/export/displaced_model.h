@@ -81,6 +81,7 @@ inline Measured measure(Mesh mesh, int voxels, int resolution, int dice, bool at
                     figures.masked, figures.rms, figures.p999, figures.max);
     };
     print("displaced mesh to volume", measured.displaced.meshToVolume);
+    print("  of fine texels        ", measured.displaced.fineTexels);
     print("  with voxelisation     ", measured.displaced.meshAsItIs);
     print("volume to displaced mesh", measured.displaced.volumeToMesh);
     print("without displacement    ", measured.undisplaced.meshToVolume);

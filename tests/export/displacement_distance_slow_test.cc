@@ -20,6 +20,9 @@ TEST(DisplacementDistance, TheDisplacedScanOfTheBuddhaIsTheVoxelSurface) {
     // As it is, with the scan's edges, which the lattice rounds by up to half a voxel.
     EXPECT_LT(measured.displaced.meshAsItIs.rms, 0.05);
     EXPECT_LT(measured.displaced.meshAsItIs.p999, 0.4);
+    ASSERT_GT(measured.seams.size(), 10000u);
+    EXPECT_LT(measured.seamsUnder(0.999), 0.02);
+    EXPECT_LT(measured.seams.back(), 0.05); // 0.038 at single points
     // A coat of 4 to 8 voxels is wider than many of the statue's creases: an eighth of it is folds, which are left out.
     EXPECT_LT(measured.foldFraction, 0.14);
     EXPECT_LT(measured.displaced.meshToVolume.maskedShare(), 0.16);
@@ -35,7 +38,7 @@ TEST(DisplacementDistance, AScanWithoutUvsIsTheVoxelSurfaceThroughItsCharts) {
     const test::Measured measured = test::measure(std::move(mesh), 160, 2048, 3, false);
     test::expectControl(measured);
     // A coat of 4 to 8 voxels on 160 leaves little beside folds, and texels of half a voxel. Measured: 0.035 and 0.25, at
-    // most 0.66, from the mesh, 0.037, 0.27 and 0.86 to it; seams 0.053 and at most 0.20, where 0.02 is asked.
+    // most 0.66, from the mesh, 0.037, 0.27 and 0.82 to it; seams 0.009, 0.020 at 99.9 % and at most 0.039.
     for (const auto& figures : {measured.displaced.meshToVolume, measured.displaced.volumeToMesh}) {
         EXPECT_GT(figures.points, 20000u);
         EXPECT_LT(figures.rms, 0.05);
@@ -43,15 +46,21 @@ TEST(DisplacementDistance, AScanWithoutUvsIsTheVoxelSurfaceThroughItsCharts) {
         EXPECT_LT(figures.max, 1.0);
     }
     ASSERT_GT(measured.seams.size(), 1000u);
-    EXPECT_LT(measured.seamsUnder(0.99), 0.06);
-    EXPECT_LT(measured.seams.back(), 0.25);
+    EXPECT_LT(measured.seamsUnder(0.99), 0.02);
+    EXPECT_LT(measured.seams.back(), 0.05);
 }
 
 TEST(DisplacementDistance, TheDisplacedCageOfSpotWithItsOwnUvsIsTheVoxelSurface) {
     const test::Measured measured =
         test::measure(readMesh(PATINA_SOURCE_DIR "/data/meshes/spot_control_mesh.obj"), 512, 4096, 2, false);
     test::expectControl(measured);
-    test::expectTheVoxelSurface(measured, 500000, 0.7); // 0.62 at single points, where 0.5 is asked
+    // Spot's UVs are stretched in places: 2 % of its points lie on texels wider than a voxel, which cannot hold what lies
+    // between their middles (0.68 at single points). On the others 0.52; 0.5 is asked.
+    test::expectTheVoxelSurface(measured, 500000, 0.75);
+    EXPECT_GT(measured.displaced.fineTexels.points, measured.displaced.meshToVolume.points * 95 / 100);
+    EXPECT_LT(measured.displaced.fineTexels.max, 0.55);
+    ASSERT_GT(measured.seams.size(), 10000u);
+    EXPECT_LT(measured.seams.back(), 0.02);
     EXPECT_LT(measured.foldFraction, 0.03);
     EXPECT_LT(measured.displaced.meshToVolume.maskedShare(), 0.04);
     EXPECT_LT(measured.displaced.volumeToMesh.maskedShare(), 0.01);
