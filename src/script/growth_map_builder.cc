@@ -151,15 +151,19 @@ MapBuilder::GrowthSetup MapBuilder::setUpGrowth(const GrowthCall& call, double c
 }
 
 std::shared_ptr<const GrowthPattern> MapBuilder::pattern(const GrowthLattice& cells, const GrowthOptions& options,
-                                                         const std::string& label, Progress& progress) {
+                                                         const std::string& label, Progress& progress,
+                                                         bool keepsStepBefore) {
     // What maps steer depends on more than its options; and large lattices are not worth their memory.
     constexpr std::size_t mostCells = 4'000'000, mostPatterns = 12;
-    if (!options.arrival.empty() || !options.blocked.empty() || cells.size() > mostCells)
-        return std::make_shared<const GrowthPattern>(grow(cells, options, context_.seed, label, &progress));
-    const std::string history = fmt::format(
-        "{} {} {:a} {} {} {} {:a} {:a} {:a} {} {}", int(options.model), int(options.rate), options.total, options.ofFull,
-        options.reach, options.patch, options.seeding, options.blockedFraction, options.pointSpacing,
-        static_cast<const void*>(&cells), label);
+    if (!options.arrival.empty() || !options.blocked.empty() || cells.size() > mostCells) {
+        auto made = std::make_shared<const GrowthPattern>(grow(cells, options, context_.seed, label, &progress));
+        followed_ += made->statistics.arrivals;
+        return made;
+    }
+    const std::string history =
+        fmt::format("{} {} {:a} {} {} {} {:a} {:a} {:a} {} {}", int(options.model), int(options.rate), options.total,
+                    options.ofFull, options.reach, options.patch, options.seeding, options.blockedFraction,
+                    options.pointSpacing, static_cast<const void*>(&cells), label);
     const Grown* earlier = nullptr;
     for (const Grown& kept : recent_) {
         if (kept.history != history || kept.step > options.step)
@@ -169,9 +173,18 @@ std::shared_ptr<const GrowthPattern> MapBuilder::pattern(const GrowthLattice& ce
         if (!earlier || kept.step > earlier->step)
             earlier = &kept;
     }
+    // A frame that ends in a step goes on from the one before it (weather_script.cc): that is passed on the way.
+    std::shared_ptr<const GrowthPattern> passed;
+    if (keepsStepBefore && goesOn(options) && options.step > 1.0 && (!earlier || earlier->step < options.step - 1.0)) {
+        GrowthOptions onTheWay = options;
+        onTheWay.step = options.step - 1.0;
+        passed = pattern(cells, onTheWay, label, progress, false);
+        earlier = &recent_.back();
+    }
     auto made = std::make_shared<const GrowthPattern>(
         earlier ? growOn(cells, options, context_.seed, label, *earlier->pattern, earlier->step, &progress)
                 : grow(cells, options, context_.seed, label, &progress));
+    followed_ += made->statistics.arrivals;
     recent_.push_back({history, options.step, made});
     if (recent_.size() > mostPatterns)
         recent_.pop_front();
@@ -181,6 +194,7 @@ std::shared_ptr<const GrowthPattern> MapBuilder::pattern(const GrowthLattice& ce
 ThicknessMapPtr MapBuilder::buildGrowth(const GrowthCall& call, Progress& progress) {
     const double byDefault = context_.longestSide / cellsPerLongestSide;
     const auto [cells, options, flux] = setUpGrowth(call, cellOf(call, byDefault), true, progress);
+    followed_ = 0;
     // One history: the earlier step is part of the later one, and no cell has fallen since.
     std::shared_ptr<const GrowthPattern> before;
     if (call.since > 0) {
@@ -190,6 +204,7 @@ ThicknessMapPtr MapBuilder::buildGrowth(const GrowthCall& call, Progress& progre
     }
     const auto now = pattern(cells, options, call.label, progress);
     statistics_.push_back(now->statistics);
+    statistics_.back().arrivals = followed_;
     std::vector<float> factor = now->factor;
     if (before)
         std::transform(factor.begin(), factor.end(), before->factor.begin(), factor.begin(),

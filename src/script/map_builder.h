@@ -77,7 +77,8 @@ class MapBuilder {
     /// grow(), or what it made for a map shortly before: frames of a series ask for the last one's step again, and for
     /// later ones, which go on from it.
     std::shared_ptr<const GrowthPattern> pattern(const GrowthLattice& cells, const GrowthOptions& options,
-                                                 const std::string& label, Progress& progress);
+                                                 const std::string& label, Progress& progress,
+                                                 bool keepsStepBefore = true);
     ThicknessMapPtr buildCall(const Expression& expression, Progress& progress);
     ThicknessMapPtr buildField(const Expression& expression, Progress& progress);
     FieldStore& fieldStore();
@@ -106,7 +107,8 @@ class MapBuilder {
         double step;
         std::shared_ptr<const GrowthPattern> pattern;
     };
-    std::deque<Grown> recent_; ///< newest last
+    std::deque<Grown> recent_;   ///< newest last
+    std::uint64_t followed_ = 0; ///< arrivals, for the growth that is being built
 };
 
 } // namespace patina

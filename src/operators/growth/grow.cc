@@ -184,13 +184,16 @@ GrowthPattern grow(const GrowthLattice& lattice, const GrowthOptions& options, s
     return patternOf({lattice, options, options.age(), seed, label, progress});
 }
 
-GrowthPattern growOn(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
-                     std::string_view label, const GrowthPattern& earlier, double earlierStep, Progress* progress) {
+bool goesOn(const GrowthOptions& options) {
     // On slanted tracks a particle may pass below what overhangs, and a pattern of heights has no overhangs.
     const bool slanted = options.from != Imath::V3d(0.0);
-    const bool canGoOn = (options.model == GrowthModel::ballisticDeposition && !slanted) ||
-                         options.model == GrowthModel::directedPercolation;
-    if (!canGoOn)
+    return (options.model == GrowthModel::ballisticDeposition && !slanted) ||
+           options.model == GrowthModel::directedPercolation;
+}
+
+GrowthPattern growOn(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
+                     std::string_view label, const GrowthPattern& earlier, double earlierStep, Progress* progress) {
+    if (!goesOn(options))
         return grow(lattice, options, seed, label, progress);
     checkOptions(lattice, options);
     check(earlierStep >= 0.0 && earlierStep <= options.step, "a history cannot go back", "give an earlier step");

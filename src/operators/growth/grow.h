@@ -38,9 +38,11 @@ struct GrowthScale {
 GrowthPattern grow(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
                    std::string_view label, Progress* progress = nullptr);
 
+/// Whether growOn() does less than grow(): BD but from a direction, and DPD.
+bool goesOn(const GrowthOptions& options);
+
 /// The same, going on from the pattern that an earlier step of the same history made (options.step aside, its options
-/// were these): the same bits for the work of what has grown since in BD and DPD. Other models, and BD from a
-/// direction, grow from the start.
+/// were these): the same bits, for the work of what has grown since where goesOn(). Others grow from the start.
 GrowthPattern growOn(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
                      std::string_view label, const GrowthPattern& earlier, double earlierStep,
                      Progress* progress = nullptr);
@@ -49,8 +51,8 @@ GrowthPattern growOn(const GrowthLattice& lattice, const GrowthOptions& options,
 std::vector<float> growHeights(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
                                std::string_view label, Progress* progress = nullptr);
 
-/// Where the sample points of ST lie (scene units): no two closer than options.pointSpacing cells in a straight line, and
-/// no place of the surface further than two such spacings from one.
+/// Where the sample points of ST lie (scene units): no two closer than options.pointSpacing cells in a straight line,
+/// and no place of the surface further than two such spacings from one.
 std::vector<Imath::V3d> samplePoints(const GrowthLattice& lattice, const GrowthOptions& options, std::uint64_t seed,
                                      std::string_view label);
 
