@@ -74,7 +74,7 @@ bool drawText(Image& image, const std::string& words, float x, float y, int heig
     if (words.empty())
         return true;
     std::string text = words;
-    const std::vector<std::size_t> mus = replaceMu(text);
+    std::vector<std::size_t> mus = replaceMu(text);
     const std::string font = findFont();
     if (font.empty())
         return false;
@@ -84,6 +84,13 @@ bool drawText(Image& image, const std::string& words, float x, float y, int heig
     if (maxWidth > 0.f && float(size.width()) > maxWidth) {
         height = std::max(height / 2, int(float(height) * maxWidth / float(size.width())));
         size = OIIO::ImageBufAlgo::text_size(text, height, font);
+        // Still too long: its last words go.
+        for (std::string kept = words; float(size.width()) > maxWidth && kept.find_last_of(' ') != std::string::npos;) {
+            kept.erase(kept.find_last_of(' '));
+            text = kept + " ...";
+            mus = replaceMu(text);
+            size = OIIO::ImageBufAlgo::text_size(text, height, font);
+        }
     }
     const float shift = align == TextAlign::left ? 0.f : align == TextAlign::centre ? 0.5f : 1.f;
     const int left = int(std::lround(x - shift * float(size.width()))), baseline = int(std::lround(y));

@@ -68,18 +68,22 @@ TEST(ContactSheet, labelsAreDrawnUnderTheirPictureWhereThereIsAFont) {
     EXPECT_EQ(inkIn(0, 12), 0);
 }
 
-TEST(ContactSheet, longLabelsShrinkToTheirCell) {
-    Image image(400, 60, 3, 1.f);
-    const std::string words = "a label that is a good deal wider than its cell";
-    if (!drawText(image, words, 200.f, 40.f, 24, Imath::V3f(0.f), TextAlign::centre, 300.f))
-        GTEST_SKIP() << "no font is installed";
-    int left = image.width, right = 0;
-    for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x)
-            if (image.at(x, y)[0] < 0.9f)
-                left = std::min(left, x), right = std::max(right, x);
-    EXPECT_LE(right - left, 310);
-    EXPECT_NEAR(0.5 * (left + right), 200.0, 8.0);
+TEST(ContactSheet, longLabelsFitTheirCell) {
+    for (const std::string words : {"a label that is a good deal wider than its cell",
+                                    "one that is too wide for its cell even at half its height, as titles of drafts are, "
+                                    "and has to end sooner than its writer did"}) {
+        Image image(1400, 60, 3, 1.f);
+        if (!drawText(image, words, 700.f, 40.f, 24, Imath::V3f(0.f), TextAlign::centre, 300.f))
+            GTEST_SKIP() << "no font is installed";
+        int left = image.width, right = 0;
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < image.width; ++x)
+                if (image.at(x, y)[0] < 0.9f)
+                    left = std::min(left, x), right = std::max(right, x);
+        EXPECT_LE(right - left, 310);
+        EXPECT_GT(right - left, 200);
+        EXPECT_NEAR(0.5 * (left + right), 700.0, 8.0);
+    }
 }
 
 // A µ is a u that goes on below the line, where its left stem is; and it shifts nothing else.
