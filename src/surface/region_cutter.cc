@@ -1,5 +1,6 @@
 #include "surface/region_cutter.h"
 
+#include "surface/cage_topology.h"
 #include "surface/region_refine.h"
 
 #include <algorithm>
@@ -25,8 +26,8 @@ V3f relative(const V3f& p, const V3d& origin) {
     return V3f(V3d(p) - origin);
 }
 
-// Faces whose own box, `slack` of its size larger, meets the box: a limit surface stays within its control points' hull,
-// which for the faces marked here and their two rings is not far from the face.
+// Faces whose own box, `slack` of its size larger, meets the box: a limit surface stays within its control points'
+// hull, which for the faces marked here and their two rings is not far from the face.
 std::vector<char> facesMeeting(const Mesh& mesh, const Box3d& box, double slack) {
     std::vector<char> meets(mesh.faceCount(), 0);
     std::size_t start = 0;
@@ -42,15 +43,7 @@ std::vector<char> facesMeeting(const Mesh& mesh, const Box3d& box, double slack)
 }
 
 double medianEdge(const Mesh& mesh) {
-    std::vector<double> edges;
-    std::size_t start = 0;
-    for (const int size : mesh.faceSizes) {
-        for (int i = 0; i < size; ++i)
-            edges.push_back((V3d(mesh.positions[mesh.faceVertices[start + i]]) -
-                             V3d(mesh.positions[mesh.faceVertices[start + (i + 1) % size]]))
-                                .length());
-        start += size;
-    }
+    std::vector<double> edges = edgeLengths(mesh);
     if (edges.empty())
         return 0.0;
     std::nth_element(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(edges.size() / 2), edges.end());
@@ -111,8 +104,7 @@ RegionCutter::RegionCutter(const Mesh& mesh, const LimitSurfaceOptions& options)
         std::all_of(mesh.faceSizes.begin(), mesh.faceSizes.end(), [](int size) { return size == 3; });
     scheme_ = options.scheme;
     if (scheme_ == SubdivisionScheme::automatic)
-        scheme_ =
-            trianglesOnly || !whole_.note.empty() ? SubdivisionScheme::none : SubdivisionScheme::catmullClark;
+        scheme_ = trianglesOnly || !whole_.note.empty() ? SubdivisionScheme::none : SubdivisionScheme::catmullClark;
     level_ = options.level;
     if (scheme_ == SubdivisionScheme::none)
         return;

@@ -1,26 +1,15 @@
 #include "surface/region_refine.h"
 
 #include "base/errors.h"
+#include "surface/cage_topology.h"
 
 #include <opensubdiv/far/primvarRefiner.h>
-#include <opensubdiv/far/topologyDescriptor.h>
-#include <opensubdiv/far/topologyRefinerFactory.h>
-
-#include <memory>
 
 namespace patina {
 
 namespace Far = OpenSubdiv::Far;
-namespace Sdc = OpenSubdiv::Sdc;
 
 namespace {
-
-template <class Value>
-struct Weighted {
-    Value value;
-    void Clear(void* = nullptr) { value = Value(0.f); }
-    void AddWithWeight(const Weighted& other, float weight) { value += weight * other.value; }
-};
 
 template <class Value, class Refine>
 std::vector<Value> refined(const std::vector<Value>& coarse, int count, Refine&& refine) {
@@ -32,27 +21,6 @@ std::vector<Value> refined(const std::vector<Value>& coarse, int count, Refine&&
     for (std::size_t i = 0; i < to.size(); ++i)
         fine[i] = to[i].value;
     return fine;
-}
-
-std::unique_ptr<Far::TopologyRefiner> refinerOf(const Mesh& mesh, SubdivisionScheme scheme) {
-    Far::TopologyDescriptor descriptor;
-    descriptor.numVertices = static_cast<int>(mesh.positions.size());
-    descriptor.numFaces = static_cast<int>(mesh.faceSizes.size());
-    descriptor.numVertsPerFace = mesh.faceSizes.data();
-    descriptor.vertIndicesPerFace = mesh.faceVertices.data();
-    Far::TopologyDescriptor::FVarChannel channel;
-    if (mesh.hasUvs()) {
-        channel.numValues = static_cast<int>(mesh.uvs.size());
-        channel.valueIndices = mesh.faceUvs.data();
-        descriptor.numFVarChannels = 1;
-        descriptor.fvarChannels = &channel;
-    }
-    Sdc::Options rules;
-    rules.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
-    rules.SetFVarLinearInterpolation(Sdc::Options::FVAR_LINEAR_BOUNDARIES);
-    using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
-    const auto type = scheme == SubdivisionScheme::loop ? Sdc::SCHEME_LOOP : Sdc::SCHEME_CATMARK;
-    return std::unique_ptr<Far::TopologyRefiner>(Factory::Create(descriptor, Factory::Options(type, rules)));
 }
 
 } // namespace
@@ -90,6 +58,12 @@ CagePart keepFaces(const CagePart& part, const std::vector<char>& keep) {
     for (const auto& [name, values] : mesh.vertexAttributes)
         for (const int v : vertices)
             kept.mesh.vertexAttributes[name].push_back(values[v]);
+    for (const Crease& crease : mesh.creases)
+        if (vertex[crease.a] >= 0 && vertex[crease.b] >= 0)
+            kept.mesh.creases.push_back({vertex[crease.a], vertex[crease.b], crease.sharpness});
+    for (const SharpCorner& corner : mesh.corners)
+        if (vertex[corner.vertex] >= 0)
+            kept.mesh.corners.push_back({vertex[corner.vertex], corner.sharpness});
     return kept;
 }
 
@@ -109,7 +83,7 @@ void growByRings(const Mesh& mesh, std::vector<char>& marked, int rings) {
 
 CagePart refineOnce(const CagePart& part, SubdivisionScheme scheme) {
     const Mesh& mesh = part.mesh;
-    const auto refiner = refinerOf(mesh, scheme);
+    const auto refiner = makeRefiner(mesh, scheme);
     if (!refiner)
         throw ModelError(mesh.name, "the part of it near the region cannot be subdivided",
                          "use --scheme none, or repair the model");
@@ -140,6 +114,15 @@ CagePart refineOnce(const CagePart& part, SubdivisionScheme scheme) {
         }
         fine.faces.push_back(part.faces[level.GetFaceParentFace(f)]);
     }
+    // What is left of their sharpness. Boundaries are sharp by the rules.
+    for (int e = 0; e < level.GetNumEdges(); ++e)
+        if (level.GetEdgeSharpness(e) > 0.f && !level.IsEdgeBoundary(e)) {
+            const Far::ConstIndexArray ends = level.GetEdgeVertices(e);
+            fine.mesh.creases.push_back({ends[0], ends[1], level.GetEdgeSharpness(e)});
+        }
+    for (int v = 0; v < level.GetNumVertices(); ++v)
+        if (level.GetVertexSharpness(v) > 0.f)
+            fine.mesh.corners.push_back({v, level.GetVertexSharpness(v)});
     return fine;
 }
 

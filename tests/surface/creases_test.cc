@@ -4,6 +4,7 @@
 #include "surface/limit_surface.h"
 #include "surface/mesh_file.h"
 #include "surface/mesh_repair.h"
+#include "surface/region_cutter.h"
 #include "test_models.h"
 
 #include <gmock/gmock.h>
@@ -21,13 +22,6 @@ LimitSurfaceOptions atLevel(int level) {
     LimitSurfaceOptions options;
     options.level = level;
     return options;
-}
-
-float distanceTo(const SurfaceMesh& surface, const V3f& point) {
-    float nearest = 1e30f;
-    for (const V3f& position : surface.positions)
-        nearest = std::min(nearest, (position - point).length());
-    return nearest;
 }
 
 /// The four edges around the cube's face z = 1.
@@ -89,6 +83,22 @@ TEST(Creases, theLevelReachesTheEndOfTheLongestCrease) {
     ASSERT_EQ(surface.positions.size(), makeLimitSurface(makeCube(), atLevel(3)).positions.size());
     for (const V3f& p : surface.positions)
         EXPECT_LT(distanceTo(deep, p), 2e-5f);
+}
+
+// A close-up is cut out step by step, and each step leaves what remains of the sharpness to the next.
+TEST(Creases, aCloseUpHasThemToo) {
+    LimitSurfaceOptions options;
+    const auto closeUp = [&](const Mesh& mesh, const V3f& middle) {
+        const Imath::V3d half(0.06), at(middle);
+        return RegionCutter(mesh, options).near(Imath::Box3d(at - half, at + half), Imath::V3d(0.0), 0.01);
+    };
+    const V3f sharp(2.f / 3.f, 2.f / 3.f, 1.f), blunt(59.f / 96.f, 59.f / 96.f, 0.75f);
+    EXPECT_LT(distanceTo(closeUp(cubeWithLid(10.f), sharp), sharp), 2e-6f);
+    EXPECT_LT(distanceTo(closeUp(cubeWithLid(1.f), blunt), blunt), 2e-6f);
+    Mesh pointed = makeCube();
+    pointed.corners = {{7, 10.f}};
+    EXPECT_LT(distanceTo(closeUp(pointed, V3f(1.f)), V3f(1.f)), 2e-6f);
+    EXPECT_TRUE(closeUp(makeCube(), V3f(1.f)).triangles.empty()); // the smooth cube does not come there
 }
 
 const char* const taggedCube = "v 9 9 9\n" // in no face: what comes after is counted from it all the same

@@ -24,13 +24,6 @@ LimitSurfaceOptions atLevel(int level, SubdivisionScheme scheme = SubdivisionSch
     return options;
 }
 
-float distanceTo(const SurfaceMesh& surface, const V3f& point) {
-    float nearest = 1e30f;
-    for (const V3f& position : surface.positions)
-        nearest = std::min(nearest, (position - point).length());
-    return nearest;
-}
-
 // The limit of a vertex of valence n among quads is (n² v + 4 Σ edge neighbours + Σ diagonal neighbours) / (n (n + 5))
 // (Halstead, Kass & DeRose 1993). For the corner (1,1,1) of the cube of side 2: n = 3, the edge neighbours sum to
 // (1,1,1), the diagonal ones to (-1,-1,-1): (9 + 4 - 1) / 24 = 1/2. The first step, 5/9, has to be left behind.

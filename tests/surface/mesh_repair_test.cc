@@ -1,6 +1,7 @@
 #include "surface/mesh_repair.h"
 
 #include "base/errors.h"
+#include "support/test_meshes.h"
 #include "surface/limit_surface.h"
 #include "surface/mesh_file.h"
 #include "surface/mesh_topology.h"
@@ -275,23 +276,7 @@ TEST(MeshRepair, aSheetWithBothSidesModelledKeepsItsFront) {
 }
 
 TEST(MeshRepair, aMoebiusStripIsASheetThatIsToldOf) {
-    Mesh strip;
-    strip.name = "moebius";
-    const int n = 24;
-    for (int i = 0; i < n; ++i) {
-        const double a = 2.0 * 3.14159265358979 * i / n, half = 0.5 * a;
-        for (const double side : {-0.3, 0.3}) {
-            const double r = 1.0 + side * std::cos(half);
-            strip.positions.emplace_back(r * std::cos(a), r * std::sin(a), side * std::sin(half));
-        }
-    }
-    for (int i = 0; i < n; ++i) {
-        const bool last = i + 1 == n;
-        const int a = 2 * i, b = 2 * i + 1, c = last ? 1 : 2 * i + 2, d = last ? 0 : 2 * i + 3;
-        strip.faceSizes.insert(strip.faceSizes.end(), 2, 3);
-        for (const int v : {a, c, b, b, c, d})
-            strip.faceVertices.push_back(v);
-    }
+    Mesh strip = test::moebiusStrip(1.0, 0.3, 24);
     const MeshReport report = repairMesh(strip, RepairMode::automatic);
     EXPECT_GE(report.oneSidedEdges.count, 1u);
     EXPECT_THAT(all(report.warnings), HasSubstr("Möbius"));

@@ -5,11 +5,20 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 namespace patina {
+
+/// From the nearest of a surface's vertices.
+inline float distanceTo(const SurfaceMesh& surface, const Imath::V3f& point) {
+    float nearest = 1e30f;
+    for (const Imath::V3f& position : surface.positions)
+        nearest = std::min(nearest, (position - point).length());
+    return nearest;
+}
 
 inline Mesh makeCube() {
     Mesh mesh;

@@ -1,6 +1,7 @@
 // Any model: the metal is where a person would say it is.
 
 #include "base/errors.h"
+#include "support/test_meshes.h"
 #include "support/test_surfaces.h"
 #include "surface/limit_surface.h"
 #include "surface/mesh_file.h"
@@ -189,23 +190,7 @@ TEST(AnyModel, ASheetsBackStaysClearOfWhatLiesBehindIt) {
 }
 
 TEST(AnyModel, AMoebiusStripBecomesVoxels) {
-    Mesh strip;
-    strip.name = "moebius";
-    const int n = 60;
-    for (int i = 0; i < n; ++i) {
-        const double a = 2.0 * 3.14159265358979 * i / n, half = 0.5 * a;
-        for (const double side : {-10.0, 10.0}) {
-            const double r = 40.0 + side * std::cos(half);
-            strip.positions.emplace_back(r * std::cos(a), r * std::sin(a), side * std::sin(half));
-        }
-    }
-    for (int i = 0; i < n; ++i) {
-        const bool last = i + 1 == n;
-        const int a = 2 * i, b = 2 * i + 1, c = last ? 1 : 2 * i + 2, d = last ? 0 : 2 * i + 3;
-        strip.faceSizes.insert(strip.faceSizes.end(), 2, 3);
-        for (const int v : {a, c, b, b, c, d})
-            strip.faceVertices.push_back(v);
-    }
+    Mesh strip = test::moebiusStrip(40.0, 10.0, 60);
     repairMesh(strip, RepairMode::automatic);
     const auto piece = pieceOf(strip);
     // About the strip's area (2 pi 40 · 20) times the back's eight voxels.
