@@ -28,6 +28,7 @@ struct Film {
 
 struct Searchers {
     NearestInBlock seeds, balls;
+    std::int32_t guess = -1; ///< the seed that last kept a ball from touching
 };
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
@@ -123,14 +124,20 @@ std::vector<std::uint8_t> coveredSeeds(const DistanceTransform& surface, const C
             const auto at = [](float v, int step) { return std::clamp(int(std::floor(v)) + step, 0, 7); };
             return 64 * at(points.x[s], n >> 2) + 8 * at(points.y[s], (n >> 1) & 1) + at(points.z[s], n & 1);
         };
-        for (std::uint32_t s = block.begin; s < block.end; ++s)
-            if (!balls.touches(static_cast<std::int32_t>(s))) {
-                for (int n = 0; n < 8; ++n)
-                    mask[cornerOf(s, n) >> 6] |= std::uint64_t(1) << (cornerOf(s, n) & 63);
-                covered[s] = 1;
-                any = true;
-            }
-        if (!any)
+        // How thick its film is matters only where a film may be a false one.
+        std::int32_t guess = -1;
+        for (std::uint32_t s = block.begin; s < block.end; ++s) {
+            covered[s] = !balls.touches(static_cast<std::int32_t>(s), guess);
+            if (!covered[s])
+                continue;
+            thickest[b] = std::max(thickest[b], doubtful[s] ? faintest : 2.f * surelyFilm);
+            if (!doubtful[s])
+                continue;
+            for (int n = 0; n < 8; ++n)
+                mask[cornerOf(s, n) >> 6] |= std::uint64_t(1) << (cornerOf(s, n) & 63);
+            any = true;
+        }
+        if (!any || thickest[b] > surelyFilm)
             return;
         NearestInBlock& near = scratch.local().balls;
         SearchWindow window;
@@ -138,7 +145,7 @@ std::vector<std::uint8_t> coveredSeeds(const DistanceTransform& surface, const C
         window.furthest = 2.f * radius + 8.f;
         nearestBall.search(block.block, window, near);
         for (std::uint32_t s = block.begin; s < block.end; ++s)
-            if (covered[s]) {
+            if (covered[s] && doubtful[s]) {
                 const Imath::V3f x(points.x[s], points.y[s], points.z[s]);
                 std::int32_t centre = -1;
                 float least = infinite;
@@ -156,10 +163,7 @@ std::vector<std::uint8_t> coveredSeeds(const DistanceTransform& surface, const C
                 // A seed on an edge may lie on a chord below it: what is surely a film is so on the faces beside it
                 // too.
                 const bool bent = surface.seeds().patches[s].bentness() > 0.3f;
-                thickest[b] = std::max({thickest[b], faintest,
-                                        !doubtful[s] ? 2.f * surelyFilm
-                                        : bent       ? std::min(film, 0.5f * surelyFilm)
-                                                     : film});
+                thickest[b] = std::max(thickest[b], bent ? std::min(film, 0.5f * surelyFilm) : film);
             }
     });
     progress.checkpoint();
@@ -168,9 +172,10 @@ std::vector<std::uint8_t> coveredSeeds(const DistanceTransform& surface, const C
 }
 
 // Balls fit into hollows, too, but no operator comes there: what faces closed air is left as it is.
-void dropClosedAir(const DistanceTransform& surface, const OpenAir& air, std::vector<std::uint8_t>& covered) {
+// \return whether there is any
+bool dropClosedAir(const DistanceTransform& surface, const OpenAir& air, std::vector<std::uint8_t>& covered) {
     if (!air.anyClosed())
-        return;
+        return false;
     const PointBlocks& points = surface.seeds().points;
     const auto near = [](float v) { return static_cast<unsigned>(std::clamp(int(std::lround(v)), 0, 7)); };
     for (const PointBlocks::Block& block : points.blocks) {
@@ -180,6 +185,11 @@ void dropClosedAir(const DistanceTransform& surface, const OpenAir& air, std::ve
                              64 * near(points.x[s]) + 8 * near(points.y[s]) + near(points.z[s])))
                 covered[s] = 0;
     }
+    return true;
+}
+
+bool anyOf(const VoxelMask& mask) {
+    return std::any_of(mask.begin(), mask.end(), [](std::uint64_t word) { return word != 0; });
 }
 
 // Marks the blocks with a voxel that may be nearer than `distance` to a covered seed of this block.
@@ -230,8 +240,9 @@ Closing closeInterface(LayerVolume& volume, int k, const ClosingOptions& options
         // Between a seed that the balls touch and one that they do not lies the closing's rim: each voxel there is asked
         // for itself.
         covered = withNeighbours(points, covered);
+        bool closedAir = false;
         if (options.openAirOnly)
-            dropClosedAir(surface, OpenAir(volume), covered);
+            closedAir = dropClosedAir(surface, OpenAir(volume), covered);
         openvdb::CoordBBox box = points.lattice.box();
         const int reach = static_cast<int>(std::ceil((radius + margin) / 8.f));
         box.expand(reach);
@@ -245,42 +256,57 @@ Closing closeInterface(LayerVolume& volume, int k, const ClosingOptions& options
         std::vector<std::unique_ptr<Film>> found(blocks.size());
         tbb::enumerable_thread_specific<Searchers> scratch;
         const LevelSetBlocks& levelSet = surface.levelSet();
+        const bool askAll = options.global || closedAir;
         tbb::parallel_for(std::size_t(0), blocks.size(), [&](std::size_t n) {
             const openvdb::Coord& block = blocks[n];
             const FloatLeaf* leaf = levelSet.leafAt(block);
             if ((!leaf && levelSet.fillAt(block) < 0.f) || progress.cancelled())
                 return;
-            std::uint64_t wanted[8], active[8] = {};
-            std::fill(wanted, wanted + 8, ~std::uint64_t(0));
-            if (leaf)
-                for (int pos = 0; pos < 512; ++pos) {
-                    const std::uint64_t bit = std::uint64_t(1) << (pos & 63);
-                    if (leaf->isValueOn(static_cast<openvdb::Index>(pos)))
-                        active[pos >> 6] |= bit;
-                    else if (!(leaf->buffer().data()[pos] > 0.f))
-                        wanted[pos >> 6] &= ~bit;
-                }
-            keepWithin(grids.sides, block, wanted);
+            VoxelMask wanted, active{};
+            wanted.fill(~std::uint64_t(0));
+            if (leaf) {
+                const float* phi = leaf->buffer().data();
+                const VoxelMask air = voxelsWhere([phi](unsigned pos) { return phi[pos] > 0.f; });
+                active = activeVoxelsOf(*leaf);
+                for (int w = 0; w < 8; ++w)
+                    wanted[w] = air[w] | active[w];
+            }
+            keepWithin(grids.sides, block, wanted.data());
+            // Of the band, voxels over covered seeds. Beyond it a film is where the balls are far from, and who covers it
+            // matters only where some air is not theirs.
+            VoxelMask asked = wanted, filmed{};
+            for (int w = 0; w < 8 && !askAll; ++w)
+                asked[w] &= active[w];
             Searchers& search = scratch.local();
             SearchWindow window;
-            window.mask = wanted;
+            window.mask = asked.data();
             window.furthest = radius + margin;
             window.relevant = covered.data();
-            surface.nearest(block, window, search.seeds);
-            if (!search.seeds.any)
-                return;
-            std::uint64_t filmed[8] = {};
-            bool filmHere = false;
-            for (int pos = 0; pos < 512; ++pos)
-                if ((wanted[pos >> 6] >> (pos & 63) & 1) && search.seeds.point[pos] >= 0 &&
-                    covered[search.seeds.point[pos]]) {
-                    filmed[pos >> 6] |= std::uint64_t(1) << (pos & 63);
-                    filmHere = true;
-                }
-            if (!filmHere)
+            search.seeds.any = false;
+            if (anyOf(asked))
+                surface.nearest(block, window, search.seeds);
+            for (int pos = 0; search.seeds.any && pos < 512; ++pos) {
+                const std::uint64_t bit = std::uint64_t(1) << (pos & 63);
+                const std::int32_t seed = search.seeds.point[pos];
+                if (!(asked[pos >> 6] & bit) || seed < 0 || !covered[seed])
+                    continue;
+                const Imath::V3f x(float(pos >> 6), float((pos >> 3) & 7), float(pos & 7));
+                if (!(active[pos >> 6] & bit) ||
+                    !balls.touches(block, surface.seeds().pointUnder(block, x, seed), search.guess))
+                    filmed[pos >> 6] |= bit;
+            }
+            if (!askAll) {
+                VoxelMask beyond;
+                for (int w = 0; w < 8; ++w)
+                    beyond[w] = wanted[w] & ~active[w];
+                balls.dropOpen(block, beyond.data());
+                for (int w = 0; w < 8; ++w)
+                    filmed[w] |= beyond[w];
+            }
+            if (!anyOf(filmed))
                 return;
             SearchWindow around;
-            around.mask = filmed;
+            around.mask = filmed.data();
             around.nearest = radius - margin - 1.f;
             around.furthest = 2.f * radius + 8.f;
             nearestBall.search(block, around, search.balls);
@@ -298,8 +324,6 @@ Closing closeInterface(LayerVolume& volume, int k, const ClosingOptions& options
                     continue; // in the air, far above the film
                 const Imath::V3f x(float(pos >> 6), float((pos >> 3) & 7), float(pos & 7));
                 const bool isActive = active[pos >> 6] & bit;
-                if (isActive && balls.touches(block, surface.seeds().pointUnder(block, x, search.seeds.point[pos])))
-                    continue;
                 const float here = isActive ? leaf->buffer().data()[pos] / static_cast<float>(voxelSize) : infinite;
                 // The ball that is placed comes at least as near as the one found.
                 if (!isActive && centre >= 0 &&

@@ -17,13 +17,15 @@ constexpr float shellWidth = 1.9f; // a cell that {D = r} crosses has its corner
 
 } // namespace
 
-bool ClosingBalls::Patches::add(std::int32_t s) {
-    if (s < 0 || count == HalfSpaces::most)
+bool ClosingBalls::Patches::holds(std::int32_t s) const {
+    return std::find(seed.begin(), seed.begin() + count, s) != seed.begin() + count;
+}
+
+bool ClosingBalls::addPatch(const openvdb::Coord& block, std::int32_t seed, Patches& patches) const {
+    if (seed < 0 || patches.count == HalfSpaces::most || patches.holds(seed))
         return false;
-    for (int i = 0; i < count; ++i)
-        if (seed[i] == s)
-            return false;
-    seed[count++] = s;
+    patches.seed[patches.count] = seed;
+    patches.point[patches.count++] = surface_.seeds().points.from(block, seed);
     return true;
 }
 
@@ -119,16 +121,24 @@ std::int32_t ClosingBalls::seedAt(const openvdb::Coord& voxel) const {
 bool ClosingBalls::addPatches(const openvdb::Coord& block, const Imath::V3f& point, Patches& patches) const {
     const openvdb::Coord cell(8 * block.x() + int(std::floor(point.x)), 8 * block.y() + int(std::floor(point.y)),
                               8 * block.z() + int(std::floor(point.z)));
+    if (cell == patches.cell)
+        return false;
+    patches.cell = cell;
     bool added = false;
-    for (int n = 0; n < 8; ++n)
-        added |= patches.add(seedAt(cell.offsetBy(n >> 2, (n >> 1) & 1, n & 1)));
+    std::int32_t last = -1;
+    for (int n = 0; n < 8; ++n) {
+        const std::int32_t seed = seedAt(cell.offsetBy(n >> 2, (n >> 1) & 1, n & 1));
+        if (seed != last)
+            added |= addPatch(block, seed, patches);
+        last = seed;
+    }
     return added;
 }
 
-float ClosingBalls::clearance(const openvdb::Coord& block, const Imath::V3f& point, const Patches& patches) const {
+float ClosingBalls::clearance(const Imath::V3f& point, const Patches& patches) const {
     float least = std::numeric_limits<float>::max();
     for (int i = 0; i < patches.count; ++i) {
-        const Imath::V3f away = point - surface_.seeds().footOf(block, point, patches.seed[i]);
+        const Imath::V3f away = fromFoot(patches, i, point);
         least = std::min(least, away.dot(away));
     }
     return std::sqrt(least);
@@ -141,14 +151,12 @@ bool ClosingBalls::place(const openvdb::Coord& block, const Imath::V3f& x, Patch
     for (int iteration = 0; iteration < 6; ++iteration) {
         // Each patch keeps the ball's centre on the far side of a plane: D_i + n_i · (c - centre) >= r.
         spaces.count = 0;
-        float lacking = 0.f;
         for (int i = 0; i < patches.count; ++i) {
-            Imath::V3f n = centre - surface_.seeds().footOf(block, centre, patches.seed[i]);
+            Imath::V3f n = fromFoot(patches, i, centre);
             const float d = n.length();
             if (!(d > 1e-4f))
                 continue;
             n /= d;
-            lacking = std::max(lacking, radius_ - d);
             spaces.normal[spaces.count] = n;
             spaces.offset[spaces.count++] = n.dot(centre) + radius_ - d;
         }
@@ -159,15 +167,14 @@ bool ClosingBalls::place(const openvdb::Coord& block, const Imath::V3f& x, Patch
             next = centre + step * (1.5f / moved);
         centre = next;
         const bool added = mayAdd && addPatches(block, centre, patches);
-        // No foot goes further than the centre does: what was clear before a small step is so, but for the step, after
-        // it.
-        if (moved < 1e-2f && !added)
-            return lacking + moved < 0.1f;
+        // The planes stand for surfaces no more bent than the ball, nearly always: after a step of m they are out by m² / 2r.
+        if (moved < 0.1f && !added)
+            return spaces.lackingAt(centre) < 0.1f;
         const Imath::V3f gone = centre - start;
         if (gone.dot(gone) > 9.f)
             return false;
     }
-    return clearance(block, centre, patches) > radius_ - 0.1f;
+    return clearance(centre, patches) > radius_ - 0.1f;
 }
 
 float ClosingBalls::distance(const openvdb::Coord& block, const Imath::V3f& x, std::int32_t start) const {
@@ -181,13 +188,22 @@ float ClosingBalls::distance(const openvdb::Coord& block, const Imath::V3f& x, s
     return std::min(nearest, (x - centre).length());
 }
 
-bool ClosingBalls::touches(std::int32_t seed) const {
-    const PointBlocks& points = surface_.seeds().points;
-    return touches(points.blocks[points.blockOf[seed]].block,
-                   {{points.x[seed], points.y[seed], points.z[seed]}, surface_.seeds().patches[seed].normal});
+void ClosingBalls::dropOpen(const openvdb::Coord& block, std::uint64_t* voxels) const {
+    const std::int32_t number = lattice_.holds(block) ? lattice_.at(block) : freeBlock;
+    if (number == freeBlock)
+        std::fill(voxels, voxels + 8, std::uint64_t(0));
+    for (int pos = 0; number >= 0 && pos < 512; ++pos)
+        if (shell_[number].seed[pos] == NearestInBlock::further)
+            voxels[pos >> 6] &= ~(std::uint64_t(1) << (pos & 63));
 }
 
-bool ClosingBalls::touches(const openvdb::Coord& block, const PatchPoint& point) const {
+bool ClosingBalls::touches(std::int32_t seed, std::int32_t& guess) const {
+    const PointBlocks& points = surface_.seeds().points;
+    return touches(points.blocks[points.blockOf[seed]].block,
+                   {{points.x[seed], points.y[seed], points.z[seed]}, surface_.seeds().patches[seed].normal}, guess);
+}
+
+bool ClosingBalls::touches(const openvdb::Coord& block, const PatchPoint& point, std::int32_t& guess) const {
     const Imath::V3f centre = point.foot + point.normal * radius_;
     if (fromOutside_) {
         const openvdb::Coord cell(8 * block.x() + int(std::floor(centre.x)), 8 * block.y() + int(std::floor(centre.y)),
@@ -202,7 +218,7 @@ bool ClosingBalls::touches(const openvdb::Coord& block, const PatchPoint& point)
         if (!reached)
             return false;
     }
-    return contact_.isClear(block, centre, radius_ - contactTolerance);
+    return contact_.isClear(block, centre, radius_ - contactTolerance, guess);
 }
 
 void ClosingBalls::centresOfBlock(std::size_t n, std::vector<Imath::V3f>& found) const {
@@ -269,10 +285,9 @@ void ClosingBalls::centresOfBlock(std::size_t n, std::vector<Imath::V3f>& found)
                 bool differ = false;
                 const Imath::V3f middle = origin + Imath::V3f(0.5f);
                 for (int v = 0; v < 8; ++v) {
-                    if (!patches.add(seed[corner[v]]))
+                    if (!addPatch(block, seed[corner[v]], patches))
                         continue;
-                    const Imath::V3f n =
-                        (middle - surface_.seeds().footOf(block, middle, seed[corner[v]])).normalized();
+                    const Imath::V3f n = fromFoot(patches, patches.count - 1, middle).normalized();
                     if (patches.count == 1)
                         first = n;
                     differ |= n.dot(first) < 0.95f;

@@ -29,18 +29,25 @@ class ClosingBalls {
 
     /// Whether a ball touches the surface at a point of it (in voxels from a block's origin), D(p + r n) >= r -
     /// contactTolerance: then the closing changes nothing there. False in doubt.
-    bool touches(const openvdb::Coord& block, const PatchPoint& point) const;
-    bool touches(std::int32_t seed) const;
+    /// \param guess  a seed that may be in the way, as PatchContact::isClear() takes it
+    bool touches(const openvdb::Coord& block, const PatchPoint& point, std::int32_t& guess) const;
+    bool touches(std::int32_t seed, std::int32_t& guess) const;
+
+    /// Takes from `voxels` those of a block that are further from the surface than a ball's centre: open air.
+    void dropOpen(const openvdb::Coord& block, std::uint64_t* voxels) const;
 
   private:
     struct ShellBlock {
         openvdb::Coord block;
         std::array<std::int32_t, 512> seed; ///< nearest to the voxel, or NearestInBlock::further, closer
     };
+    /// Patches that may hold a ball: those nearest to the corners of the cells that its centre has been in.
     struct Patches {
         std::array<std::int32_t, 24> seed;
+        std::array<Imath::V3f, 24> point; ///< the seed's own, in voxels from the block's origin
         int count = 0;
-        bool add(std::int32_t s);
+        openvdb::Coord cell = openvdb::Coord::max(); ///< the last that was looked at
+        bool holds(std::int32_t s) const;
     };
 
     void findShell(Progress& progress);
@@ -48,12 +55,19 @@ class ClosingBalls {
     void placeCentres(Progress& progress);
     void centresOfBlock(std::size_t n, std::vector<Imath::V3f>& found) const;
     std::int32_t seedAt(const openvdb::Coord& voxel) const;
+    /// Whether the patch was not there yet.
+    bool addPatch(const openvdb::Coord& block, std::int32_t seed, Patches& patches) const;
     /// Adds the patches nearest to the corners of the cell that a point is in; whether there were new ones.
     bool addPatches(const openvdb::Coord& block, const Imath::V3f& point, Patches& patches) const;
     /// The point closest to x at which the ball cuts none of the patches. \return whether one was found near `centre`
     bool place(const openvdb::Coord& block, const Imath::V3f& x, Patches& patches, Imath::V3f& centre,
                bool mayAdd) const;
-    float clearance(const openvdb::Coord& block, const Imath::V3f& point, const Patches& patches) const;
+    /// From the foot on the patch to a point.
+    Imath::V3f fromFoot(const Patches& patches, int i, const Imath::V3f& point) const {
+        const Imath::V3f w = point - patches.point[i];
+        return w - surface_.seeds().patches[patches.seed[i]].foot(w);
+    }
+    float clearance(const Imath::V3f& point, const Patches& patches) const;
 
     const DistanceTransform& surface_;
     PatchContact contact_;

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <utility>
 
 namespace patina {
 
 namespace {
 
-// Half the diagonal between the outermost voxel centres of a cube of 8, 4, 2 voxels.
+// Half the side and half the diagonal between the outermost voxel centres of a cube of 8, 4, 2 voxels.
+constexpr float halfSide[3] = {3.5f, 1.5f, 0.5f};
 constexpr float halfDiagonal[3] = {6.0621778f, 2.5980762f, 0.8660254f};
 constexpr std::size_t lanes = 8;
 
@@ -26,9 +29,9 @@ float squaredDistances(const float* x, const float* y, const float* z, std::size
     return *std::min_element(least, least + lanes);
 }
 
-// Fills the last lanes of a list with points so far away that they never count.
-void pad(NearestInBlock::List& list) {
-    for (std::size_t i = list.count; i < (list.count + lanes - 1) / lanes * lanes; ++i) {
+// Fills the lanes behind a list's `count` points with points so far away that they never count.
+void pad(NearestInBlock::List& list, std::size_t count) {
+    for (std::size_t i = count; i < count + lanes; ++i) {
         list.x[i] = list.y[i] = list.z[i] = 1e9f;
         list.id[i] = -1;
     }
@@ -39,31 +42,63 @@ float limitOf(float leastSquared, float half) {
     return limit * limit;
 }
 
+// Where in `squared` the smallest value stands.
+std::size_t indexOf(float least, const float* squared, std::size_t count) {
+    std::size_t i = 0;
+    while (i + 1 < count && squared[i] != least)
+        ++i;
+    return i;
+}
+
+// Appends to `to` those of the points `first` … `last` - 1 of `from` that may be nearer than point (bx, by, bz) to some
+// voxel of a cube: |x - c|² - |x - b|² is linear in x, and its least value in the cube is that at the middle, d² -
+// d_b², less the cube's side times |b - c| in the sum norm. `to` may be `from`.
+void keepUndominated(const NearestInBlock::List& from, std::size_t first, std::size_t last, float bx, float by, float bz,
+                     float leastSquared, float half, NearestInBlock::List& to) {
+    const float side = 2.f * half;
+    std::size_t n = to.count;
+    for (std::size_t i = first; i < last; i += lanes) {
+        unsigned char may[lanes];
+        // Whole lanes: what lies behind the last is allocated, and not looked at.
+        for (std::size_t l = 0; l < lanes; ++l) {
+            const float apart = std::abs(from.x[i + l] - bx) + std::abs(from.y[i + l] - by) + std::abs(from.z[i + l] - bz);
+            // A little more, for rounding.
+            may[l] = from.squared[i + l] - leastSquared <= side * apart + 1e-3f + 1e-5f * leastSquared;
+        }
+        std::uint64_t any;
+        std::memcpy(&any, may, lanes);
+        if (!any)
+            continue;
+        for (std::size_t l = 0; l < lanes && i + l < last; ++l) {
+            to.x[n] = from.x[i + l];
+            to.y[n] = from.y[i + l];
+            to.z[n] = from.z[i + l];
+            to.id[n] = from.id[i + l];
+            to.squared[n] = from.squared[i + l];
+            n += may[l];
+        }
+    }
+    to.count = n;
+}
+
 // Of `from`, what may be nearest to some voxel of the cube around (cx, cy, cz).
 // Returns a reason to leave the whole cube out, or 0.
-std::int32_t filter(NearestInBlock::List& from, float cx, float cy, float cz, float half, const SearchWindow& window,
+std::int32_t filter(NearestInBlock::List& from, float cx, float cy, float cz, int level, const SearchWindow& window,
                     NearestInBlock::List& to) {
     const float least =
         squaredDistances(from.x.data(), from.y.data(), from.z.data(), from.count, cx, cy, cz, from.squared.data());
-    const float distance = std::sqrt(least);
+    const float distance = std::sqrt(least), half = halfDiagonal[level];
     if (distance - half > window.furthest)
         return NearestInBlock::further;
     if (distance + half < window.nearest)
         return NearestInBlock::closer;
-    const float limit = limitOf(least, half);
     to.reserve(from.count + lanes);
-    std::size_t n = 0;
-    for (std::size_t i = 0; i < from.count; ++i) {
-        to.x[n] = from.x[i];
-        to.y[n] = from.y[i];
-        to.z[n] = from.z[i];
-        to.id[n] = from.id[i];
-        n += from.squared[i] <= limit;
-    }
-    to.count = n;
-    pad(to);
+    to.count = 0;
+    const std::size_t b = indexOf(least, from.squared.data(), from.count);
+    keepUndominated(from, 0, from.count, from.x[b], from.y[b], from.z[b], least, halfSide[level], to);
+    pad(to, to.count);
     if (window.relevant &&
-        std::none_of(to.id.begin(), to.id.begin() + n, [&](std::int32_t id) { return window.relevant[id]; }))
+        std::none_of(to.id.begin(), to.id.begin() + to.count, [&](std::int32_t id) { return window.relevant[id]; }))
         return NearestInBlock::further;
     return 0;
 }
@@ -129,6 +164,7 @@ bool NearestPoints::gather(const openvdb::Coord& block, const SearchWindow& wind
     list.count = 0;
     constexpr float half = halfDiagonal[0], middle = 3.5f;
     float least = std::numeric_limits<float>::max();
+    Imath::V3f best(0.f); // the nearest to the middle
     const openvdb::CoordBBox& box = points_.lattice.box();
     const auto take = [&](const openvdb::Coord& at) {
         const std::int32_t number = points_.lattice.numbers()[points_.lattice.slot(at)];
@@ -146,31 +182,22 @@ bool NearestPoints::gather(const openvdb::Coord& block, const SearchWindow& wind
         if (list.x.size() < list.count + count + lanes) {
             list.reserve(2 * (list.count + count) + lanes);
         }
-        float nearest = least;
         for (std::size_t i = 0; i < count; ++i) {
-            const float x = points_.x[found.begin + i] + ox, y = points_.y[found.begin + i] + oy,
-                        z = points_.z[found.begin + i] + oz;
-            const float dx = x - middle, dy = y - middle, dz = z - middle;
-            const float d = dx * dx + dy * dy + dz * dz;
-            list.x[list.count + i] = x;
-            list.y[list.count + i] = y;
-            list.z[list.count + i] = z;
+            list.x[list.count + i] = points_.x[found.begin + i] + ox;
+            list.y[list.count + i] = points_.y[found.begin + i] + oy;
+            list.z[list.count + i] = points_.z[found.begin + i] + oz;
             list.id[list.count + i] = static_cast<std::int32_t>(found.begin + i);
-            list.squared[list.count + i] = d;
-            nearest = d < nearest ? d : nearest;
         }
-        least = nearest;
-        const float limit = limitOf(least, half);
-        std::size_t n = list.count;
-        for (std::size_t i = list.count; i < list.count + count; ++i) {
-            list.x[n] = list.x[i];
-            list.y[n] = list.y[i];
-            list.z[n] = list.z[i];
-            list.id[n] = list.id[i];
-            list.squared[n] = list.squared[i];
-            n += list.squared[i] <= limit;
+        pad(list, list.count + count);
+        float* squared = list.squared.data() + list.count;
+        const float nearest = squaredDistances(list.x.data() + list.count, list.y.data() + list.count,
+                                               list.z.data() + list.count, count, middle, middle, middle, squared);
+        if (nearest < least) {
+            least = nearest;
+            const std::size_t at = list.count + indexOf(least, squared, count);
+            best = Imath::V3f(list.x[at], list.y[at], list.z[at]);
         }
-        list.count = n;
+        keepUndominated(list, list.count, list.count + count, best.x, best.y, best.z, least, halfSide[0], list);
     };
 
     for (int ring = 0;; ++ring) {
@@ -202,18 +229,10 @@ bool NearestPoints::gather(const openvdb::Coord& block, const SearchWindow& wind
     if (list.count == 0)
         return false;
     // What came early was measured against a looser limit.
-    const float limit = limitOf(least, half);
-    std::size_t n = 0;
-    for (std::size_t i = 0; i < list.count; ++i) {
-        list.x[n] = list.x[i];
-        list.y[n] = list.y[i];
-        list.z[n] = list.z[i];
-        list.id[n] = list.id[i];
-        n += list.squared[i] <= limit;
-    }
-    list.count = n;
-    list.reserve(n + lanes);
-    pad(list);
+    list.reserve(list.count + lanes);
+    const std::size_t gathered = std::exchange(list.count, 0);
+    keepUndominated(list, 0, gathered, best.x, best.y, best.z, least, halfSide[0], list);
+    pad(list, list.count);
     const float distance = std::sqrt(least);
     if (distance - half > window.furthest)
         return false;
@@ -222,7 +241,7 @@ bool NearestPoints::gather(const openvdb::Coord& block, const SearchWindow& wind
         return false;
     }
     return !window.relevant ||
-           std::any_of(list.id.begin(), list.id.begin() + n, [&](std::int32_t id) { return window.relevant[id]; });
+           std::any_of(list.id.begin(), list.id.begin() + list.count, [&](std::int32_t id) { return window.relevant[id]; });
 }
 
 void NearestPoints::search(const openvdb::Coord& block, const SearchWindow& window, NearestInBlock& result) const {
@@ -235,7 +254,7 @@ void NearestPoints::search(const openvdb::Coord& block, const SearchWindow& wind
         if (!wantsAny(window, x4, y4, z4, 4))
             continue;
         if (const auto reason = filter(result.lists[0], float(x4) + 1.5f, float(y4) + 1.5f, float(z4) + 1.5f,
-                                       halfDiagonal[1], window, result.lists[1])) {
+                                       1, window, result.lists[1])) {
             mark(result, x4, y4, z4, 4, reason);
             continue;
         }
@@ -244,7 +263,7 @@ void NearestPoints::search(const openvdb::Coord& block, const SearchWindow& wind
             if (!wantsAny(window, x2, y2, z2, 2))
                 continue;
             if (const auto reason = filter(result.lists[1], float(x2) + 0.5f, float(y2) + 0.5f, float(z2) + 0.5f,
-                                           halfDiagonal[2], window, result.lists[2])) {
+                                           2, window, result.lists[2])) {
                 mark(result, x2, y2, z2, 2, reason);
                 continue;
             }

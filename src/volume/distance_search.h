@@ -36,9 +36,9 @@ struct NearestInBlock {
     List lists[3];
 };
 
-/// Finds the nearest points. Of the points within d of a block's middle only those within d + 2 h of it can be the
-/// nearest to any of its voxels, where d is the distance to the nearest of them and h half the block's diagonal. Applied
-/// to blocks of 8³, 4³ and 2³ voxels in turn, that leaves about a hundred distances per voxel.
+/// Finds the nearest points. Of b, the nearest to a block's middle, and another point c the difference of the squared
+/// distances from x is linear in x, so its least value in the block tells whether c can be the nearest to any of its
+/// voxels. Applied to blocks of 8³, 4³ and 2³ voxels in turn, that leaves some tens of distances per voxel.
 class NearestPoints {
   public:
     explicit NearestPoints(const PointBlocks& points) : points_(points) {}

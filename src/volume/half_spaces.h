@@ -16,6 +16,14 @@ struct HalfSpaces {
     std::array<float, most> offset;
     int count = 0;
 
+    /// By how much a point lacks the half-space that it is furthest from; 0 where it is in all of them.
+    float lackingAt(const Imath::V3f& p) const {
+        float most = 0.f;
+        for (int i = 0; i < count; ++i)
+            most = std::max(most, offset[i] - normal[i].dot(p));
+        return most;
+    }
+
     /// The dual active-set method (Goldfarb and Idnani 1983) in three dimensions: from x, the plane that is lacked most
     /// is stepped onto, along what the planes that hold already leave free; one whose push would turn into a pull lets
     /// go. At most three hold at once, and it mostly ends after one or two steps, also where planes are nearly

@@ -5,17 +5,64 @@
 
 namespace patina {
 
+void ContactBounds::reserve(std::size_t count) {
+    for (std::vector<float>* list : {&x_, &y_, &z_, &normalX_, &normalY_, &normalZ_, &far_, &thick_})
+        list->reserve(count);
+}
+
+void ContactBounds::add(const Imath::V3f& point, const SurfacePatch& patch) {
+    constexpr float rounding = 1e-3f;
+    const float far = ContactPoints::reachOf(patch);
+    // Pieces of an edge have no side: a ball around them.
+    const Imath::V3f normal = patch.crease ? Imath::V3f(0.f) : patch.normal;
+    x_.push_back(point.x);
+    y_.push_back(point.y);
+    z_.push_back(point.z);
+    normalX_.push_back(normal.x);
+    normalY_.push_back(normal.y);
+    normalZ_.push_back(normal.z);
+    far_.push_back(far + rounding);
+    thick_.push_back((patch.crease ? 0.f : 0.5f * far * far * patch.bentness()) + rounding);
+}
+
+void ContactBounds::pad() {
+    while (x_.size() % lanes != 0) {
+        for (std::vector<float>* list : {&x_, &y_, &z_})
+            list->push_back(1e9f);
+        for (std::vector<float>* list : {&normalX_, &normalY_, &normalZ_, &far_, &thick_})
+            list->push_back(0.f);
+    }
+}
+
 PatchContact::PatchContact(const SurfaceSeeds& seeds) : seeds_(seeds) {
     const PointBlocks& points = seeds.points;
     boxes_.resize(points.blocks.size());
-    for (std::size_t b = 0; b < boxes_.size(); ++b)
-        for (std::uint32_t s = points.blocks[b].begin; s < points.blocks[b].end; ++s)
-            boxes_[b].extendBy(Imath::V3f(points.x[s], points.y[s], points.z[s]));
+    bound_.resize(points.blocks.size());
+    bounds_.reserve(points.size() + 4 * points.blocks.size());
+    for (std::size_t b = 0; b < boxes_.size(); ++b) {
+        bound_[b] = static_cast<std::uint32_t>(bounds_.size());
+        for (std::uint32_t s = points.blocks[b].begin; s < points.blocks[b].end; ++s) {
+            const Imath::V3f point(points.x[s], points.y[s], points.z[s]);
+            boxes_[b].extendBy(point);
+            bounds_.add(point, seeds.patches[s]);
+        }
+        bounds_.pad();
+    }
 }
 
-bool PatchContact::isClear(const openvdb::Coord& block, const Imath::V3f& point, float distance) const {
-    constexpr std::uint32_t lanes = 8;
+bool PatchContact::standsIn(std::uint32_t seed, const Imath::V3f& fromSeed, float distance) const {
+    const ContactPoints contacts(seeds_.patches[seed]);
+    return std::any_of(contacts.at.begin(), contacts.at.end(), [&](const Imath::V3f& q) {
+        const Imath::V3f away = fromSeed - q;
+        return away.dot(away) < distance * distance;
+    });
+}
+
+bool PatchContact::isClear(const openvdb::Coord& block, const Imath::V3f& point, float distance,
+                           std::int32_t& guess) const {
     const PointBlocks& points = seeds_.points;
+    if (guess >= 0 && standsIn(static_cast<std::uint32_t>(guess), point - points.from(block, guess), distance))
+        return false;
     const float limit = ContactPoints::squaredReach(distance), reach = std::sqrt(limit);
     openvdb::Coord low, high;
     for (int axis = 0; axis < 3; ++axis) {
@@ -25,48 +72,34 @@ bool PatchContact::isClear(const openvdb::Coord& block, const Imath::V3f& point,
         high[axis] = std::min(block[axis] + int(std::floor((point[axis] + reach + 1.f) / 8.f)),
                               points.lattice.box().max()[axis]);
     }
-    const auto standsIn = [&](std::uint32_t s, const Imath::V3f& c) {
-        const Imath::V3f w = c - Imath::V3f(points.x[s], points.y[s], points.z[s]);
-        const ContactPoints contacts(seeds_.patches[s]);
-        return std::any_of(contacts.at.begin(), contacts.at.end(), [&](const Imath::V3f& q) {
-            const Imath::V3f away = w - q;
-            return away.dot(away) < distance * distance;
-        });
-    };
     for (int i = low.x(); i <= high.x(); ++i)
         for (int j = low.y(); j <= high.y(); ++j)
             for (int k = low.z(); k <= high.z(); ++k) {
                 const std::int32_t number = points.lattice.at({i, j, k});
                 if (number < 0)
                     continue;
-                const Imath::V3f c = point - Imath::V3f(float(i - block.x()), float(j - block.y()), float(k - block.z())) * 8.f;
+                const Imath::V3f c =
+                    point - Imath::V3f(float(i - block.x()), float(j - block.y()), float(k - block.z())) * 8.f;
                 float apart = 0.f;
                 for (int axis = 0; axis < 3; ++axis) {
-                    const float d = std::max(
-                        {boxes_[number].min[axis] - c[axis], c[axis] - boxes_[number].max[axis], 0.f});
+                    const float d =
+                        std::max({boxes_[number].min[axis] - c[axis], c[axis] - boxes_[number].max[axis], 0.f});
                     apart += d * d;
                 }
                 if (apart >= limit)
                     continue;
-                const std::uint32_t end = points.blocks[number].end;
-                for (std::uint32_t s = points.blocks[number].begin; s < end; s += lanes) {
-                    const std::uint32_t count = std::min(lanes, end - s);
-                    float squared[lanes];
-                    unsigned near = 0;
-                    if (count == lanes) {
-                        for (std::uint32_t l = 0; l < lanes; ++l) {
-                            const float dx = points.x[s + l] - c.x, dy = points.y[s + l] - c.y,
-                                        dz = points.z[s + l] - c.z;
-                            squared[l] = dx * dx + dy * dy + dz * dz;
-                        }
-                        for (std::uint32_t l = 0; l < lanes; ++l)
-                            near |= unsigned(squared[l] < limit) << l;
-                    } else {
-                        near = (1u << count) - 1u;
-                    }
-                    for (std::uint32_t l = 0; near; ++l, near >>= 1)
-                        if ((near & 1u) && standsIn(s + l, c))
+                const PointBlocks::Block& seeds = points.blocks[number];
+                for (std::uint32_t s = seeds.begin; s < seeds.end; s += ContactBounds::lanes) {
+                    unsigned near = bounds_.near(bound_[number] + (s - seeds.begin), c, distance);
+                    for (std::uint32_t l = 0; near; ++l, near >>= 1) {
+                        if (!(near & 1u))
+                            continue;
+                        const std::uint32_t seed = s + l;
+                        if (standsIn(seed, c - Imath::V3f(points.x[seed], points.y[seed], points.z[seed]), distance)) {
+                            guess = static_cast<std::int32_t>(seed);
                             return false;
+                        }
+                    }
                 }
             }
     return true;
