@@ -16,7 +16,7 @@ namespace {
 
 constexpr int brickShift = 2;   // bricks of 4³ voxels hold about 25 points of a surface
 constexpr int clusterShift = 4; // clusters of 16³ voxels hold about 25 bricks
-constexpr int lanes = 8;        // points of a brick are padded to a multiple, so that their loop is straight
+constexpr int lanes = ContactBounds::lanes; // points of a brick are padded to a multiple, so that their loop is straight
 
 V3i cellOf(const V3f& point, int shift) {
     return {static_cast<int>(std::floor(point.x)) >> shift, static_cast<int>(std::floor(point.y)) >> shift,
@@ -95,6 +95,7 @@ struct Shrinking {
 struct TangentSpheres::Blocks {
     std::vector<float> x, y, z;
     std::vector<int> index; ///< of each padded point; -1 for padding
+    ContactBounds bounds;   ///< of its patch
     const SurfaceSeeds* seeds = nullptr;
     std::vector<V3f> points;
     std::vector<Brick> bricks;
@@ -165,6 +166,7 @@ void TangentSpheres::Blocks::build(const SurfaceSeeds& from) {
             y.push_back(p.y);
             z.push_back(p.z);
             index.push_back(order[i].second);
+            bounds.add(p, from.patches[order[i].second]);
             brick.box.extend(p);
             clusters.back().box.extend(p);
         }
@@ -174,6 +176,7 @@ void TangentSpheres::Blocks::build(const SurfaceSeeds& from) {
             z.push_back(1e9f);
             index.push_back(-1);
         }
+        bounds.pad();
         brick.end = static_cast<std::uint32_t>(x.size());
         bricks.push_back(brick);
         clusters.back().end = static_cast<std::uint32_t>(bricks.size());
@@ -221,18 +224,9 @@ TangentSpheres::Touch TangentSpheres::largest(const V3f& p, const V3f& n, float 
         }
         // Then the patches of those that are near enough.
         for (std::uint32_t i = brick.begin; i < brick.end; i += lanes) {
-            const float within = sphere.squaredReach();
-            const V3f c = sphere.centre;
-            float squared[lanes], least = within;
-            for (int l = 0; l < lanes; ++l) {
-                const float dx = blocks.x[i + l] - c.x, dy = blocks.y[i + l] - c.y, dz = blocks.z[i + l] - c.z;
-                squared[l] = dx * dx + dy * dy + dz * dz;
-                least = squared[l] < least ? squared[l] : least;
-            }
-            if (!(least < within))
-                continue;
-            for (int l = 0; l < lanes; ++l)
-                if (squared[l] < within && blocks.index[i + l] >= 0) {
+            unsigned near = blocks.bounds.near(i, sphere.centre, std::max(sphere.radius - t, 0.f));
+            for (int l = 0; near; ++l, near >>= 1)
+                if (near & 1u) {
                     const int seed = blocks.index[i + l];
                     sphere.meet(blocks.points[seed], patches[seed], seed);
                 }
