@@ -33,11 +33,16 @@ struct Searchers {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
-// A film beside a sharp convex edge counts if it is connected (block by block) to one elsewhere, or to one that is thicker
-// than this (voxels): along such edges, which the voxels only know to some hundredths, there are films of nothing.
+// A film beside a sharp convex edge counts if it is connected (block by block) to one elsewhere, or to one that is
+// thicker than this (voxels): along such edges, which the voxels only know to some hundredths, there are films of
+// nothing.
 constexpr float surelyFilm = 0.12f;
 // What a film counts at least where the balls do not touch.
 constexpr float faintest = 1e-6f;
+
+bool anyOf(const VoxelMask& mask) {
+    return std::any_of(mask.begin(), mask.end(), [](std::uint64_t word) { return word != 0; });
+}
 
 // Takes back what is covered in blocks from which no way through such blocks leads to a sure film.
 void dropFaintFilms(const PointBlocks& points, const std::vector<float>& thickest, std::vector<std::uint8_t>& covered) {
@@ -99,17 +104,73 @@ std::vector<std::uint8_t> besideEdges(const SurfaceSeeds& seeds) {
     std::vector<std::uint8_t> sharp(seeds.patches.size());
     for (std::size_t s = 0; s < sharp.size(); ++s) {
         const SurfacePatch& patch = seeds.patches[s];
-        sharp[s] = patch.crease ||
-                   (patch.bentness() > 0.2f && patch.shape[0] + patch.shape[3] + patch.shape[5] > 0.f);
+        sharp[s] = patch.crease || (patch.bentness() > 0.2f && patch.shape[0] + patch.shape[3] + patch.shape[5] > 0.f);
     }
     return withNeighbours(seeds.points, withNeighbours(seeds.points, withNeighbours(seeds.points, sharp)));
 }
 
+// For every seed: whether some ball that should touch it, or a surface voxel's foot on its patch, does not.
+std::vector<std::uint8_t> untouchedSeeds(const DistanceTransform& surface, const ClosingBalls& balls, double voxelSize,
+                                         Progress& progress) {
+    // The nearer end of a lattice edge that the surface crosses is within half a voxel of it.
+    const auto nearSurface = static_cast<float>(0.55 * voxelSize);
+    const PointBlocks& points = surface.seeds().points;
+    const auto& leaves = surface.levelSet().leaves();
+    std::vector<std::uint8_t> untouched(points.size(), 0);
+    std::vector<std::vector<std::int32_t>> elsewhere(leaves.size()); ///< seeds of other blocks
+    tbb::enumerable_thread_specific<Searchers> scratch;
+    tbb::parallel_for(std::size_t(0), leaves.size(), [&](std::size_t n) {
+        if (progress.cancelled())
+            return;
+        const FloatLeaf& leaf = *leaves[n];
+        const openvdb::Coord block(leaf.origin() >> 3);
+        const float* phi = leaf.buffer().data();
+        VoxelMask close = voxelsWhere([&](unsigned pos) { return std::abs(phi[pos]) <= nearSurface; });
+        const VoxelMask active = activeVoxelsOf(leaf);
+        for (int w = 0; w < 8; ++w)
+            close[w] &= active[w];
+        const std::int32_t number = points.lattice.at(block);
+        std::uint32_t begin = 0, end = 0;
+        if (number >= 0) {
+            begin = points.blocks[number].begin;
+            end = points.blocks[number].end;
+        }
+        Searchers& search = scratch.local();
+        std::int32_t guess = -1;
+        for (std::uint32_t s = begin; s < end; ++s)
+            untouched[s] = !balls.touches(static_cast<std::int32_t>(s), guess);
+        if (!anyOf(close))
+            return;
+        SearchWindow window;
+        window.mask = close.data();
+        surface.nearest(block, window, search.seeds);
+        for (int pos = 0; pos < 512; ++pos) {
+            const std::int32_t seed = search.seeds.point[pos];
+            if (!(close[pos >> 6] >> (pos & 63) & 1) || seed < 0)
+                continue;
+            const bool own = std::uint32_t(seed) >= begin && std::uint32_t(seed) < end;
+            const Imath::V3f x(float(pos >> 6), float((pos >> 3) & 7), float(pos & 7));
+            if ((own && untouched[seed]) || balls.touches(block, surface.seeds().pointUnder(block, x, seed), guess))
+                continue;
+            if (own)
+                untouched[seed] = 1;
+            else
+                elsewhere[n].push_back(seed);
+        }
+    });
+    progress.checkpoint();
+    for (const auto& seeds : elsewhere)
+        for (const std::int32_t seed : seeds)
+            untouched[seed] = 1;
+    return untouched;
+}
+
 // For every seed: whether the closing lies above it.
 std::vector<std::uint8_t> coveredSeeds(const DistanceTransform& surface, const ClosingBalls& balls,
-                                       const NearestPoints& nearestBall, float radius, Progress& progress) {
+                                       const NearestPoints& nearestBall, float radius, double voxelSize,
+                                       Progress& progress) {
     const PointBlocks& points = surface.seeds().points;
-    std::vector<std::uint8_t> covered(points.size(), 0);
+    std::vector<std::uint8_t> covered = untouchedSeeds(surface, balls, voxelSize, progress);
     std::vector<float> thickest(points.blocks.size(), 0.f);
     const std::vector<std::uint8_t> doubtful = besideEdges(surface.seeds());
     tbb::enumerable_thread_specific<Searchers> scratch;
@@ -125,9 +186,7 @@ std::vector<std::uint8_t> coveredSeeds(const DistanceTransform& surface, const C
             return 64 * at(points.x[s], n >> 2) + 8 * at(points.y[s], (n >> 1) & 1) + at(points.z[s], n & 1);
         };
         // How thick its film is matters only where a film may be a false one.
-        std::int32_t guess = -1;
         for (std::uint32_t s = block.begin; s < block.end; ++s) {
-            covered[s] = !balls.touches(static_cast<std::int32_t>(s), guess);
             if (!covered[s])
                 continue;
             thickest[b] = std::max(thickest[b], doubtful[s] ? faintest : 2.f * surelyFilm);
@@ -188,10 +247,6 @@ bool dropClosedAir(const DistanceTransform& surface, const OpenAir& air, std::ve
     return true;
 }
 
-bool anyOf(const VoxelMask& mask) {
-    return std::any_of(mask.begin(), mask.end(), [](std::uint64_t word) { return word != 0; });
-}
-
 // Marks the blocks with a voxel that may be nearer than `distance` to a covered seed of this block.
 void markAround(const PointBlocks& points, const PointBlocks::Block& block, const std::vector<std::uint8_t>& covered,
                 int reach, float distance, BlockBox& marks) {
@@ -232,13 +287,14 @@ Closing closeInterface(LayerVolume& volume, int k, const ClosingOptions& options
     {
         const DistanceTransform surface(source(), voxelSize);
         progress.checkpoint();
-        const ClosingBalls balls(surface, radius, options.global, progress);
+        const SurfaceContacts contacts(surface.levelSet(), surface.seeds(), voxelSize);
+        const ClosingBalls balls(surface, contacts, radius, options.global, progress);
         const NearestPoints nearestBall(balls.centres());
-        std::vector<std::uint8_t> covered = coveredSeeds(surface, balls, nearestBall, radius, progress);
+        std::vector<std::uint8_t> covered = coveredSeeds(surface, balls, nearestBall, radius, voxelSize, progress);
         // A film's voxel is nearer than r to the surface, at a seed that the closing covers or beside one.
         const PointBlocks& points = surface.seeds().points;
-        // Between a seed that the balls touch and one that they do not lies the closing's rim: each voxel there is asked
-        // for itself.
+        // Between a seed that the balls touch and one that they do not lies the closing's rim: each voxel there is
+        // asked for itself.
         covered = withNeighbours(points, covered);
         bool closedAir = false;
         if (options.openAirOnly)
@@ -272,8 +328,8 @@ Closing closeInterface(LayerVolume& volume, int k, const ClosingOptions& options
                     wanted[w] = air[w] | active[w];
             }
             keepWithin(grids.sides, block, wanted.data());
-            // Of the band, voxels over covered seeds. Beyond it a film is where the balls are far from, and who covers it
-            // matters only where some air is not theirs.
+            // Of the band, voxels over covered seeds. Beyond it a film is where the balls are far from, and who covers
+            // it matters only where some air is not theirs.
             VoxelMask asked = wanted, filmed{};
             for (int w = 0; w < 8 && !askAll; ++w)
                 asked[w] &= active[w];
@@ -326,14 +382,13 @@ Closing closeInterface(LayerVolume& volume, int k, const ClosingOptions& options
                 const bool isActive = active[pos >> 6] & bit;
                 const float here = isActive ? leaf->buffer().data()[pos] / static_cast<float>(voxelSize) : infinite;
                 // The ball that is placed comes at least as near as the one found.
-                if (!isActive && centre >= 0 &&
-                    radius - (balls.centres().from(block, centre) - x).length() > margin)
+                if (!isActive && centre >= 0 && radius - (balls.centres().from(block, centre) - x).length() > margin)
                     continue;
                 // What no ball comes near is filled. Where the ball at the point under x would stand in the surface by
                 // more than the tolerance t, those that fit stand aside by t at least, so that over a flat place the
                 // film is no thinner than t² / 2r, which rounding would lose.
-                const float level = centre < 0 ? -radius - 8.f
-                                               : std::min(radius - balls.distance(block, x, centre), here - leastFilm);
+                const float level =
+                    centre < 0 ? -radius - 8.f : std::min(radius - balls.distance(block, x, centre), here - leastFilm);
                 if (!isActive && level > margin)
                     continue;
                 film->level[pos] = level;

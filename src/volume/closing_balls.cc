@@ -29,8 +29,9 @@ bool ClosingBalls::addPatch(const openvdb::Coord& block, std::int32_t seed, Patc
     return true;
 }
 
-ClosingBalls::ClosingBalls(const DistanceTransform& surface, double radius, bool fromOutside, Progress& progress)
-    : surface_(surface), contact_(surface.seeds()), radius_(static_cast<float>(radius)), fromOutside_(fromOutside) {
+ClosingBalls::ClosingBalls(const DistanceTransform& surface, const SurfaceContacts& contacts, double radius,
+                           bool fromOutside, Progress& progress)
+    : surface_(surface), contact_(contacts), radius_(static_cast<float>(radius)), fromOutside_(fromOutside) {
     findShell(progress);
     if (fromOutside)
         keepReachable();
@@ -167,7 +168,8 @@ bool ClosingBalls::place(const openvdb::Coord& block, const Imath::V3f& x, Patch
             next = centre + step * (1.5f / moved);
         centre = next;
         const bool added = mayAdd && addPatches(block, centre, patches);
-        // The planes stand for surfaces no more bent than the ball, nearly always: after a step of m they are out by m² / 2r.
+        // The planes stand for surfaces no more bent than the ball, nearly always: after a step of m they are out by m²
+        // / 2r.
         if (moved < 0.1f && !added)
             return spaces.lackingAt(centre) < 0.1f;
         const Imath::V3f gone = centre - start;
@@ -337,8 +339,8 @@ void ClosingBalls::placeCentres(Progress& progress) {
 }
 
 void ClosingBalls::keepReachable() {
-    // Free voxels of the shell, then a flood from outside the box; blocks off the shell count as a whole. A way from voxel
-    // to voxel strays from the middle of a narrow neck by up to 0.8 voxel: half of that is allowed for.
+    // Free voxels of the shell, then a flood from outside the box; blocks off the shell count as a whole. A way from
+    // voxel to voxel strays from the middle of a narrow neck by up to 0.8 voxel: half of that is allowed for.
     constexpr float strays = 0.4f;
     std::vector<std::array<std::uint64_t, 8>> open(shell_.size());
     tbb::parallel_for(std::size_t(0), shell_.size(), [&](std::size_t n) {

@@ -18,7 +18,8 @@ class ClosingBalls {
   public:
     /// \param radius  voxels
     /// \param fromOutside  only balls that can come from outside, rolling within {D >= r}
-    ClosingBalls(const DistanceTransform& surface, double radius, bool fromOutside, Progress& progress);
+    ClosingBalls(const DistanceTransform& surface, const SurfaceContacts& contacts, double radius, bool fromOutside,
+                 Progress& progress);
 
     /// Points near {D = r}, about one in each lattice cell that it crosses.
     const PointBlocks& centres() const { return centres_; }

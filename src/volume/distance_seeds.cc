@@ -1,5 +1,7 @@
 #include "volume/distance_seeds.h"
 
+#include "volume/distance_creases.h"
+
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -93,11 +95,12 @@ SurfacePatch patchAt(const float* at, const float* c, Imath::V3f& p, float nowhe
 
     // Mixed second derivatives are those of the interpolant.
     const float alternating = c[7] - c[6] - c[5] + c[4] - c[3] + c[2] + c[1] - c[0];
-    const float xy = (c[6] - c[4] - c[2] + c[0]) + p.z * alternating, xz = (c[5] - c[4] - c[1] + c[0]) + p.y * alternating,
+    const float xy = (c[6] - c[4] - c[2] + c[0]) + p.z * alternating,
+                xz = (c[5] - c[4] - c[1] + c[0]) + p.y * alternating,
                 yz = (c[3] - c[2] - c[1] + c[0]) + p.x * alternating;
     const float h[3][3] = {{second[0], xy, xz}, {xy, second[1], yz}, {xz, yz, second[2]}};
-    const float above = 0.5f * (p.x * (1.f - p.x) * second[0] + p.y * (1.f - p.y) * second[1] +
-                                p.z * (1.f - p.z) * second[2]);
+    const float above =
+        0.5f * (p.x * (1.f - p.x) * second[0] + p.y * (1.f - p.y) * second[1] + p.z * (1.f - p.z) * second[2]);
     p += patch.normal * std::clamp(above / slope, -0.2f, 0.2f);
 
     // S = P H P / |gradient|, P = 1 - n n^T; no sharper than a radius of one voxel.
@@ -177,160 +180,6 @@ bool mayCross(const LevelSetBlocks& levelSet, std::size_t n, float iso, float ne
     for (const float value : around)
         within += value <= iso;
     return within > 0 && within < 9 * 9 * 9;
-}
-
-// The plane or planes that meet near a seed on a sharp crease, and where they do.
-struct Crease {
-    Imath::V3f point;
-    Imath::V3f along; ///< unit; zero where three planes meet
-    float reach;      ///< how far it goes on both ways
-};
-
-// The point nearest to the origin that minimises the squared distances to some of the planes normal · (p - place) = 0
-// (Garland and Heckbert's quadric): (sum n n^T + e) q = sum n (n · place), where e keeps q near the origin along an edge.
-template <typename Chosen>
-Imath::V3f meetingPoint(const Imath::V3f* normals, const Imath::V3f* places, int count, Chosen chosen) {
-    double A[3][3] = {{1e-3, 0.0, 0.0}, {0.0, 1e-3, 0.0}, {0.0, 0.0, 1e-3}}, r[3] = {};
-    for (int i = 0; i < count; ++i) {
-        if (!chosen(i))
-            continue;
-        const double d = double(normals[i].dot(places[i]));
-        for (int x = 0; x < 3; ++x) {
-            r[x] += double(normals[i][x]) * d;
-            for (int y = 0; y < 3; ++y)
-                A[x][y] += double(normals[i][x]) * double(normals[i][y]);
-        }
-    }
-    const double c00 = A[1][1] * A[2][2] - A[1][2] * A[2][1], c01 = A[0][2] * A[2][1] - A[0][1] * A[2][2],
-                 c02 = A[0][1] * A[1][2] - A[0][2] * A[1][1];
-    const double c11 = A[0][0] * A[2][2] - A[0][2] * A[2][0], c12 = A[0][2] * A[1][0] - A[0][0] * A[1][2],
-                 c22 = A[0][0] * A[1][1] - A[0][1] * A[1][0];
-    const double determinant = A[0][0] * c00 + A[1][0] * c01 + A[2][0] * c02; // > 0: A is positive definite
-    return {float((c00 * r[0] + c01 * r[1] + c02 * r[2]) / determinant),
-            float((c01 * r[0] + c11 * r[1] + c12 * r[2]) / determinant),
-            float((c02 * r[0] + c12 * r[1] + c22 * r[2]) / determinant)};
-}
-
-// Values of a level set say where faces are, but no cell knows the edge between two: its seed lies on a chord. Where a
-// seed is so curved that it can only be on an edge, the planes of the flat seeds around it are intersected.
-bool findCrease(const SurfaceSeeds& seeds, std::uint32_t s, Crease& crease) {
-    constexpr float reach = 2.2f, flat = 0.15f;
-    const PointBlocks& points = seeds.points;
-    const openvdb::Coord& home = points.blocks[points.blockOf[s]].block;
-    const Imath::V3f here(points.x[s], points.y[s], points.z[s]);
-    std::array<Imath::V3f, 64> normals, places;
-    int count = 0;
-    const auto side = [](float v, int& from, int& to) {
-        from = v < reach ? -1 : 0;
-        to = v > 8.f - reach ? 1 : 0;
-    };
-    int from[3], to[3];
-    for (int axis = 0; axis < 3; ++axis)
-        side(here[axis], from[axis], to[axis]);
-    for (int i = from[0]; i <= to[0]; ++i)
-        for (int j = from[1]; j <= to[1]; ++j)
-            for (int k = from[2]; k <= to[2]; ++k) {
-                const std::int32_t number = points.lattice.at(home.offsetBy(i, j, k));
-                if (number < 0)
-                    continue;
-                const Imath::V3f origin(8.f * float(i), 8.f * float(j), 8.f * float(k));
-                for (std::uint32_t o = points.blocks[number].begin; o < points.blocks[number].end; ++o) {
-                    const Imath::V3f place = origin + Imath::V3f(points.x[o], points.y[o], points.z[o]);
-                    const Imath::V3f apart = place - here;
-                    if (apart.dot(apart) > reach * reach || seeds.patches[o].bentness() > flat || count == 64)
-                        continue;
-                    normals[count] = seeds.patches[o].normal;
-                    places[count++] = apart;
-                }
-            }
-    if (count < 4)
-        return false;
-    // The faces that meet: that of the nearest flat seed, the nearest of another direction, the nearest of a third that
-    // leaves the plane of those two and makes a corner.
-    const auto nearestWhere = [&](auto condition) {
-        int found = -1;
-        for (int i = 0; i < count; ++i)
-            if (condition(i) && (found < 0 || places[i].dot(places[i]) < places[found].dot(places[found])))
-                found = i;
-        return found;
-    };
-    const int a = nearestWhere([](int) { return true; });
-    const int b = nearestWhere([&](int i) { return normals[i].dot(normals[a]) < 0.9f; });
-    if (b < 0 || normals[a].dot(normals[b]) < -0.8f)
-        return false;
-    crease.along = normals[a].cross(normals[b]).normalized();
-    const int c = nearestWhere([&](int i) { return std::abs(normals[i].dot(crease.along)) > 0.3f; });
-    crease.reach = SurfacePatch::furthestReach;
-    const auto belongs = [&](int i, int face) { return face >= 0 && normals[i].dot(normals[face]) > 0.97f; };
-    const Imath::V3f edge = meetingPoint(normals.data(), places.data(), count,
-                                         [&](int i) { return belongs(i, a) || belongs(i, b); });
-    crease.point = edge;
-    if (c >= 0) {
-        // Where along the edge the third face cuts it: a corner there, or an edge that ends there.
-        const float end = normals[c].dot(places[c] - edge) / normals[c].dot(crease.along);
-        if (std::abs(end) < 0.5f) {
-            crease.point = meetingPoint(normals.data(), places.data(), count, [&](int i) {
-                return belongs(i, a) || belongs(i, b) || belongs(i, c);
-            });
-            crease.along = Imath::V3f(0.f);
-        } else {
-            crease.reach = std::min(crease.reach, std::abs(end));
-        }
-    }
-    const Imath::V3f q = crease.point;
-    // Further away it is the corner of a rounded edge, not of a sharp one.
-    if (!(q.dot(q) < 0.65f * 0.65f) || q.dot(seeds.patches[s].normal) < 0.f)
-        return false; // in a groove the walls are nearer than its bottom, and seeds on them serve better
-    crease.point = here + q;
-    return true;
-}
-
-// Moves seeds on sharp convex creases onto them, as pieces of a line (or a point, in a corner).
-void sharpenCreases(SurfaceSeeds& seeds) {
-    PointBlocks& points = seeds.points;
-    std::vector<std::vector<std::pair<std::uint32_t, Crease>>> found(points.blocks.size());
-    tbb::parallel_for(std::size_t(0), points.blocks.size(), [&](std::size_t n) {
-        Crease crease;
-        for (std::uint32_t s = points.blocks[n].begin; s < points.blocks[n].end; ++s)
-            if (seeds.patches[s].bentness() > 0.5f && findCrease(seeds, s, crease))
-                found[n].emplace_back(s, crease);
-    });
-    tbb::parallel_for(std::size_t(0), points.blocks.size(), [&](std::size_t n) {
-        for (const auto& [s, crease] : found[n]) {
-            // The point may leave its block by a little; its block's number stays.
-            points.x[s] = crease.point.x;
-            points.y[s] = crease.point.y;
-            points.z[s] = crease.point.z;
-            SurfacePatch& patch = seeds.patches[s];
-            patch.crease = true;
-            patch.shape = {crease.along.x, crease.along.y, crease.along.z, 0.f, 0.f, 0.f};
-            patch.reach = crease.reach;
-        }
-    });
-    // Faces end at their creases.
-    tbb::parallel_for(std::size_t(0), points.blocks.size(), [&](std::size_t n) {
-        const openvdb::Coord& block = points.blocks[n].block;
-        for (int around = 0; around < 27; ++around) {
-            const openvdb::Coord step(around / 9 - 1, around / 3 % 3 - 1, around % 3 - 1);
-            const std::int32_t other = points.lattice.at(block + step);
-            if (other < 0 || found[other].empty())
-                continue;
-            for (std::uint32_t s = points.blocks[n].begin; s < points.blocks[n].end; ++s) {
-                SurfacePatch& patch = seeds.patches[s];
-                if (patch.crease)
-                    continue;
-                const Imath::V3f here(points.x[s], points.y[s], points.z[s]);
-                for (const auto& [c, crease] : found[other]) {
-                    const Imath::V3f apart = crease.point +
-                                             Imath::V3f(float(step.x()), float(step.y()), float(step.z())) * 8.f - here;
-                    if (apart.dot(apart) > 4.f)
-                        continue;
-                    const Imath::V3f across = apart - crease.along * apart.dot(crease.along);
-                    patch.reach = std::min(patch.reach, across.length());
-                }
-            }
-        }
-    });
 }
 
 } // namespace

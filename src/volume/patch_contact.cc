@@ -10,9 +10,9 @@ void ContactBounds::reserve(std::size_t count) {
         list->reserve(count);
 }
 
-void ContactBounds::add(const Imath::V3f& point, const SurfacePatch& patch) {
+void ContactBounds::add(const Imath::V3f& point, const SurfaceContacts& contacts, std::size_t seed) {
     constexpr float rounding = 1e-3f;
-    const float far = ContactPoints::reachOf(patch);
+    const SurfacePatch& patch = contacts.seeds().patches[seed];
     // Pieces of an edge have no side: a ball around them.
     const Imath::V3f normal = patch.crease ? Imath::V3f(0.f) : patch.normal;
     x_.push_back(point.x);
@@ -21,8 +21,8 @@ void ContactBounds::add(const Imath::V3f& point, const SurfacePatch& patch) {
     normalX_.push_back(normal.x);
     normalY_.push_back(normal.y);
     normalZ_.push_back(normal.z);
-    far_.push_back(far + rounding);
-    thick_.push_back((patch.crease ? 0.f : 0.5f * far * far * patch.bentness()) + rounding);
+    far_.push_back(contacts.reachOf(seed) + rounding);
+    thick_.push_back(contacts.heightOf(seed) + rounding);
 }
 
 void ContactBounds::pad() {
@@ -34,8 +34,8 @@ void ContactBounds::pad() {
     }
 }
 
-PatchContact::PatchContact(const SurfaceSeeds& seeds) : seeds_(seeds) {
-    const PointBlocks& points = seeds.points;
+PatchContact::PatchContact(const SurfaceContacts& contacts) : contacts_(contacts) {
+    const PointBlocks& points = contacts.seeds().points;
     boxes_.resize(points.blocks.size());
     bound_.resize(points.blocks.size());
     bounds_.reserve(points.size() + 4 * points.blocks.size());
@@ -44,15 +44,15 @@ PatchContact::PatchContact(const SurfaceSeeds& seeds) : seeds_(seeds) {
         for (std::uint32_t s = points.blocks[b].begin; s < points.blocks[b].end; ++s) {
             const Imath::V3f point(points.x[s], points.y[s], points.z[s]);
             boxes_[b].extendBy(point);
-            bounds_.add(point, seeds.patches[s]);
+            bounds_.add(point, contacts, s);
         }
         bounds_.pad();
     }
 }
 
 bool PatchContact::standsIn(std::uint32_t seed, const Imath::V3f& fromSeed, float distance) const {
-    const ContactPoints contacts(seeds_.patches[seed]);
-    return std::any_of(contacts.at.begin(), contacts.at.end(), [&](const Imath::V3f& q) {
+    const SurfaceContacts::Points contacts = contacts_.of(seed);
+    return std::any_of(contacts.begin(), contacts.end(), [&](const Imath::V3f& q) {
         const Imath::V3f away = fromSeed - q;
         return away.dot(away) < distance * distance;
     });
@@ -60,10 +60,10 @@ bool PatchContact::standsIn(std::uint32_t seed, const Imath::V3f& fromSeed, floa
 
 bool PatchContact::isClear(const openvdb::Coord& block, const Imath::V3f& point, float distance,
                            std::int32_t& guess) const {
-    const PointBlocks& points = seeds_.points;
+    const PointBlocks& points = contacts_.seeds().points;
     if (guess >= 0 && standsIn(static_cast<std::uint32_t>(guess), point - points.from(block, guess), distance))
         return false;
-    const float limit = ContactPoints::squaredReach(distance), reach = std::sqrt(limit);
+    const float limit = ContactBounds::squaredReach(distance), reach = std::sqrt(limit);
     openvdb::Coord low, high;
     for (int axis = 0; axis < 3; ++axis) {
         // A seed that was moved onto a crease may have left its block by less than a voxel.

@@ -4,6 +4,7 @@
 #include "operators/fields/tangent_spheres.h"
 #include "volume/distance.h"
 #include "volume/nest_grids.h"
+#include "volume/surface_contacts.h"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -38,7 +39,8 @@ std::vector<float> accessibleRadii(const LayerVolume& volume, const SurfaceVoxel
     const auto limit = static_cast<float>(limitVoxels);
     const DistanceTransform transform(*volume.grids().nest()[layer], volume.scale().voxelSize);
     const SurfaceSeeds& seeds = transform.seeds();
-    const TangentSpheres spheres(seeds);
+    const SurfaceContacts contacts(transform.levelSet(), seeds, volume.scale().voxelSize);
+    const TangentSpheres spheres(contacts);
     std::vector<float> radii(surface.size(), limit);
     std::unique_ptr<Passages> passages;
     if (global)

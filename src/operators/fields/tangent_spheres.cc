@@ -16,7 +16,8 @@ namespace {
 
 constexpr int brickShift = 2;   // bricks of 4³ voxels hold about 25 points of a surface
 constexpr int clusterShift = 4; // clusters of 16³ voxels hold about 25 bricks
-constexpr int lanes = ContactBounds::lanes; // points of a brick are padded to a multiple, so that their loop is straight
+constexpr int lanes =
+    ContactBounds::lanes; // points of a brick are padded to a multiple, so that their loop is straight
 
 V3i cellOf(const V3f& point, int shift) {
     return {static_cast<int>(std::floor(point.x)) >> shift, static_cast<int>(std::floor(point.y)) >> shift,
@@ -65,8 +66,8 @@ float curvature(const V3f& p, const V3f& n, float x, float y, float z) {
 // A sphere at p that gives way to what stands in it.
 struct Shrinking {
     V3f p, n;
-    float most;      // k, so far
-    float radius;    // 1 / 2k
+    float most;   // k, so far
+    float radius; // 1 / 2k
     V3f centre;
     int stop = -1;
 
@@ -76,10 +77,10 @@ struct Shrinking {
         radius = 0.5f / k;
         centre = p + n * radius;
     }
-    float squaredReach() const { return ContactPoints::squaredReach(radius); }
+    float squaredReach() const { return ContactBounds::squaredReach(radius); }
 
-    void meet(const V3f& seed, const SurfacePatch& patch, int number) {
-        for (const V3f& contact : ContactPoints(patch).at) {
+    void meet(const V3f& seed, const SurfaceContacts& contacts, int number) {
+        for (const V3f& contact : contacts.of(static_cast<std::size_t>(number))) {
             const V3f q = seed + contact;
             const float k = curvature(p, n, q.x, q.y, q.z);
             if (k > most) {
@@ -96,7 +97,7 @@ struct TangentSpheres::Blocks {
     std::vector<float> x, y, z;
     std::vector<int> index; ///< of each padded point; -1 for padding
     ContactBounds bounds;   ///< of its patch
-    const SurfaceSeeds* seeds = nullptr;
+    const SurfaceContacts* contacts = nullptr;
     std::vector<V3f> points;
     std::vector<Brick> bricks;
     std::vector<Cluster> clusters;
@@ -104,7 +105,7 @@ struct TangentSpheres::Blocks {
     std::vector<std::int32_t> table; ///< cluster at a place, or -1
 
     std::int32_t clusterAt(int i, int j, int k) const { return table[(std::size_t(i) * size.y + j) * size.z + k]; }
-    void build(const SurfaceSeeds& from);
+    void build(const SurfaceContacts& from);
 
     template <typename Visit>
     void clustersWithin(const V3f& low, const V3f& high, Visit&& visit) const {
@@ -117,8 +118,9 @@ struct TangentSpheres::Blocks {
     }
 };
 
-void TangentSpheres::Blocks::build(const SurfaceSeeds& from) {
-    seeds = &from;
+void TangentSpheres::Blocks::build(const SurfaceContacts& all) {
+    contacts = &all;
+    const SurfaceSeeds& from = all.seeds();
     points.reserve(from.points.size());
     for (const PointBlocks::Block& block : from.points.blocks) {
         const openvdb::Coord origin = block.block << 3;
@@ -166,7 +168,7 @@ void TangentSpheres::Blocks::build(const SurfaceSeeds& from) {
             y.push_back(p.y);
             z.push_back(p.z);
             index.push_back(order[i].second);
-            bounds.add(p, from.patches[order[i].second]);
+            bounds.add(p, all, static_cast<std::size_t>(order[i].second));
             brick.box.extend(p);
             clusters.back().box.extend(p);
         }
@@ -183,9 +185,9 @@ void TangentSpheres::Blocks::build(const SurfaceSeeds& from) {
     }
 }
 
-TangentSpheres::TangentSpheres(const SurfaceSeeds& seeds) {
+TangentSpheres::TangentSpheres(const SurfaceContacts& contacts) {
     auto blocks = std::make_unique<Blocks>();
-    blocks->build(seeds);
+    blocks->build(contacts);
     blocks_ = std::move(blocks);
 }
 
@@ -194,10 +196,10 @@ TangentSpheres::TangentSpheres(TangentSpheres&&) noexcept = default;
 
 TangentSpheres::Touch TangentSpheres::largest(const V3f& p, const V3f& n, float limit, int guess) const {
     const Blocks& blocks = *blocks_;
-    const std::vector<SurfacePatch>& patches = blocks.seeds->patches;
+    const SurfaceContacts& contacts = *blocks.contacts;
     Shrinking sphere(p, n, 0.5f / limit);
     if (guess >= 0)
-        sphere.meet(blocks.points[guess], patches[guess], guess);
+        sphere.meet(blocks.points[guess], contacts, guess);
 
     const auto visitBrick = [&](const Brick& brick) {
         if (brick.box.squaredDistance(sphere.centre) > sphere.squaredReach())
@@ -228,7 +230,7 @@ TangentSpheres::Touch TangentSpheres::largest(const V3f& p, const V3f& n, float 
             for (int l = 0; near; ++l, near >>= 1)
                 if (near & 1u) {
                     const int seed = blocks.index[i + l];
-                    sphere.meet(blocks.points[seed], patches[seed], seed);
+                    sphere.meet(blocks.points[seed], contacts, seed);
                 }
         }
     };

@@ -7,14 +7,14 @@
 
 namespace patina {
 
-struct SurfaceSeeds;
+class SurfaceContacts;
 
 /// A sphere of radius r that touches p along the unit normal n holds a point q, with d = q - p, where r > d² / 2 n·d.
 /// So the largest empty one is 1 / 2k with k = max n·d / d² over all q (an inversion about p turns spheres through p
 /// into planes, and q into a point at height k). As radii shrink the spheres nest, so what lies outside one lies
 /// outside all that follow: one walk over the blocks that the sphere still meets finds the answer.
 ///
-/// The surface is the contact points of all patches (volume/patch_contact.h). They may stand into the sphere by t =
+/// The surface is the contact points of all patches (volume/surface_contacts.h). They may stand into the sphere by t =
 /// contactTolerance: k = (n·d - t) / (d² - t²). With D the distance to the nearest of them, the answer is the largest A
 /// with D(p + A n) >= A - t; and since D(p + r n) - r never grows with r, every smaller r passes the same test and no
 /// larger one does.
@@ -22,8 +22,8 @@ struct SurfaceSeeds;
 /// Immutable; queries are safe from any thread.
 class TangentSpheres {
   public:
-    /// \param seeds  of a level set (volume/distance_seeds.h); must outlive this
-    explicit TangentSpheres(const SurfaceSeeds& seeds);
+    /// \param contacts  must outlive this
+    explicit TangentSpheres(const SurfaceContacts& contacts);
     ~TangentSpheres();
     TangentSpheres(TangentSpheres&&) noexcept;
 
