@@ -104,7 +104,8 @@ std::vector<std::uint8_t> besideEdges(const SurfaceSeeds& seeds) {
     std::vector<std::uint8_t> sharp(seeds.patches.size());
     for (std::size_t s = 0; s < sharp.size(); ++s) {
         const SurfacePatch& patch = seeds.patches[s];
-        sharp[s] = patch.crease || (patch.bentness() > 0.2f && patch.shape[0] + patch.shape[3] + patch.shape[5] > 0.f);
+        sharp[s] = (patch.crease && patch.convex) ||
+                   (!patch.crease && patch.bentness() > 0.2f && patch.shape[0] + patch.shape[3] + patch.shape[5] > 0.f);
     }
     return withNeighbours(seeds.points, withNeighbours(seeds.points, withNeighbours(seeds.points, sharp)));
 }

@@ -143,6 +143,7 @@ void moveOntoCrease(SurfaceSeeds& seeds, std::uint32_t s, const Crease& crease) 
     points.z[s] = crease.point.z;
     SurfacePatch& patch = seeds.patches[s];
     patch.crease = true;
+    patch.convex = crease.convex;
     // Between the faces' normals, so that a ball that stands on the edge cuts neither face nor the edge itself.
     patch.normal = Imath::V3f(0.f);
     for (int face = 0; face < crease.faces; ++face)
@@ -153,18 +154,19 @@ void moveOntoCrease(SurfaceSeeds& seeds, std::uint32_t s, const Crease& crease) 
 }
 
 // A seed beside a crease (`apart` from it to the crease): its patch ends there; where it lies on one of the crease's
-// faces it is flat as that is, and where it lies on a chord of a convex one it belongs onto the crease itself.
+// faces it is flat as that is, and where it lies on a chord it belongs onto the crease itself.
 void fitBeside(const Crease& crease, const Imath::V3f& apart, SurfaceSeeds& seeds, std::uint32_t s) {
     constexpr float onFace = 0.03f, underFace = 0.12f, flat = 0.03f, sharp = 0.3f, alike = 0.8f;
     SurfacePatch& patch = seeds.patches[s];
     const float bentness = patch.bentness();
     const Imath::V3f across = apart - crease.along * apart.dot(crease.along);
     if (bentness >= flat) {
-        const bool loose = crease.convex && bentness > sharp;
+        const bool loose = bentness > sharp;
+        const float side = crease.convex ? 1.f : -1.f; // on which a chord lies
         int on = -1;
         float least = loose ? underFace : onFace;
         for (int face = 0; face < crease.faces; ++face) {
-            const float under = apart.dot(crease.normal[face]);
+            const float under = side * apart.dot(crease.normal[face]);
             if (patch.normal.dot(crease.normal[face]) > alike && under > -onFace && under < least) {
                 least = under;
                 on = face;
@@ -174,10 +176,10 @@ void fitBeside(const Crease& crease, const Imath::V3f& apart, SurfaceSeeds& seed
         if (on >= 0) {
             patch.normal = crease.normal[on];
             patch.shape.fill(0.f);
-            points.x[s] += patch.normal.x * least;
-            points.y[s] += patch.normal.y * least;
-            points.z[s] += patch.normal.z * least;
-        } else if (loose && across.dot(across) < 0.65f * 0.65f && across.dot(patch.normal) > 0.f) {
+            points.x[s] += patch.normal.x * side * least;
+            points.y[s] += patch.normal.y * side * least;
+            points.z[s] += patch.normal.z * side * least;
+        } else if (loose && across.dot(across) < 0.65f * 0.65f && side * across.dot(patch.normal) > 0.f) {
             Crease here = crease;
             here.point = Imath::V3f(points.x[s], points.y[s], points.z[s]) + across;
             moveOntoCrease(seeds, s, here);
@@ -201,8 +203,7 @@ void sharpenCreases(SurfaceSeeds& seeds) {
     });
     tbb::parallel_for(std::size_t(0), points.blocks.size(), [&](std::size_t n) {
         for (const auto& [s, crease] : found[n])
-            if (crease.convex) // in a groove the walls are nearer than its bottom, and seeds on them serve better
-                moveOntoCrease(seeds, s, crease);
+            moveOntoCrease(seeds, s, crease);
     });
     tbb::parallel_for(std::size_t(0), points.blocks.size(), [&](std::size_t n) {
         const openvdb::Coord& block = points.blocks[n].block;

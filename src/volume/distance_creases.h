@@ -6,7 +6,7 @@
 namespace patina {
 
 /// Where two or three faces meet sharply no cell knows the line: its seed lies on a chord, and differences across the
-/// crease bend the patches beside it. Moves seeds on convex creases onto them, as pieces of a line (or a point, in a
+/// crease bend the patches beside it. Moves such seeds onto the crease, as pieces of a line (or a point, in a
 /// corner); ends faces at their creases; lays patches beside a crease into the plane of the face that they lie on.
 void sharpenCreases(SurfaceSeeds& seeds);
 

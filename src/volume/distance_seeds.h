@@ -18,6 +18,7 @@ struct SurfacePatch {
     std::array<float, 6> shape; ///< S: curvatures (1/voxel) as a symmetric matrix xx xy xz yy yz zz; convex: positive
 
     bool crease = false; ///< a piece of a sharp edge instead: S holds its direction (xx xy xz), zero in a corner
+    bool convex = false; ///< of a crease: it stands out of the surface
     /// How far the patch reaches from its point, in voxels: a little further than half the way to the next; less where it
     /// is so curved that a parabola says little about it (edges).
     float reach;

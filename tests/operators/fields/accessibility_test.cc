@@ -63,10 +63,9 @@ TEST(Accessibility, TheEdgesOfABoxAreAsAccessibleAsItsFaces) {
             return out.length() + std::min(std::max({q.x, q.y, q.z}), 0.0);
         },
         40);
-    // The level set of a sharp edge is a chain of facets as long as voxels, with creases between: some of its points
-    // are stopped by the next facet.
+    // Where an edge was not found, or found by a little too far out, spheres beside it are stopped.
     const Errors errors = compare(*box, 20.0, [](const V3d&) { return 20.0; });
-    EXPECT_LT(errors.beyondHalf, 0.09);
+    EXPECT_LT(errors.beyondHalf, 0.007);
 }
 
 TEST(Accessibility, InsideASphereACylinderAndATorusItIsTheirRadius) {
@@ -99,9 +98,9 @@ TEST(Accessibility, OnTheWallsOfAGrooveItGrowsWithTheDistanceFromTheApex) {
             const double s = std::hypot(p.x, p.z);
             return std::abs(p.y) < 20.0 && s < 26.0 ? s * std::tan(half) : -1.0;
         });
-        // At the apex itself voxels round the crease.
-        EXPECT_LT(errors.worst, 0.8) << degrees << " at " << errors.where.x << ' ' << errors.where.z;
-        EXPECT_LT(errors.beyondHalf, 0.03);
+        // The radius is that of a point up to 0.3 voxel from the foot that the closed form is asked at.
+        EXPECT_LT(errors.worst, 0.55) << degrees << " at " << errors.where.x << ' ' << errors.where.z;
+        EXPECT_LT(errors.beyondHalf, 0.001);
         EXPECT_GT(errors.count, 1000);
     }
 }
@@ -115,9 +114,7 @@ TEST(Accessibility, InACornerOfThreeFacesItIsTheDistanceToTheNearerWall) {
         std::sort(c, c + 3);
         return size < 20.0 ? std::max(0.0, c[1]) : -1.0;
     });
-    // Beside the creases themselves, where patches are bent.
-    EXPECT_LT(errors.worst, 0.7) << errors.where.x << ' ' << errors.where.y << ' ' << errors.where.z;
-    EXPECT_LT(errors.beyondHalf, 0.03);
+    EXPECT_LT(errors.worst, 0.5) << errors.where.x << ' ' << errors.where.y << ' ' << errors.where.z;
 }
 
 TEST(Accessibility, InASlotFloorAndWallsAreAsTheClosedFormsSay) {
@@ -125,8 +122,7 @@ TEST(Accessibility, InASlotFloorAndWallsAreAsTheClosedFormsSay) {
     for (const double d : {6.0, 14.0}) {
         const auto slot = test::volumeOf(test::slot(w, d), 40);
         const Errors errors = compare(*slot, 30.0, [=](const V3d& p) { return test::slotRadius(w, d, p); });
-        EXPECT_LT(errors.worst, 0.65) << "depth " << d << " at " << errors.where.x << ' ' << errors.where.z;
-        EXPECT_LT(errors.beyondHalf, 0.01);
+        EXPECT_LT(errors.worst, 0.5) << "depth " << d << " at " << errors.where.x << ' ' << errors.where.z;
     }
 }
 
