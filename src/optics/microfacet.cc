@@ -136,12 +136,7 @@ const AlbedoTable& albedoTable() {
     return table;
 }
 
-struct Position {
-    int below;
-    float weight;
-};
-
-Position positionOf(float value, int count) {
+AlbedoPlace positionOf(float value, int count) {
     const float scaled = std::sqrt(std::clamp(value, 0.f, 1.f)) * (count - 1);
     const int below = std::min(static_cast<int>(scaled), count - 2);
     return {below, scaled - below};
@@ -157,14 +152,6 @@ LobeAlbedo mix(const LobeAlbedo& a, const LobeAlbedo& b, float weight) {
 
 } // namespace
 
-float ggxDistribution(const V3f& half, float alpha) {
-    const float a2 = alpha * alpha;
-    // cos² (a² - 1) + 1 = cos² a² + sin²: without the cancellation where alpha is small.
-    const float sine2 = half.x * half.x + half.y * half.y;
-    const float t = half.z * half.z * a2 + sine2;
-    return a2 / (pi * t * t);
-}
-
 float smithMasking(const V3f& direction, float alpha) {
     return 1.f / (1.f + lambda(direction, alpha));
 }
@@ -177,37 +164,32 @@ float smithVisibility(const V3f& wo, const V3f& wi, float alpha) {
     return 0.5f / std::max(wi.z * o + wo.z * i, 1e-9f);
 }
 
-V3f sampleVisibleNormal(const V3f& wo, float alpha, float u1, float u2) {
-    const V3f stretched = V3f(alpha * wo.x, alpha * wo.y, wo.z).normalized();
-    const float length2 = stretched.x * stretched.x + stretched.y * stretched.y;
-    const V3f t1 = length2 > 1e-14f ? V3f(-stretched.y, stretched.x, 0.f) / std::sqrt(length2) : V3f(1.f, 0.f, 0.f);
-    const V3f t2 = stretched.cross(t1);
-    const float radius = std::sqrt(u1);
-    const float phi = 2.f * pi * u2;
-    const float p1 = radius * std::cos(phi);
-    const float s = 0.5f * (1.f + stretched.z);
-    const float p2 = (1.f - s) * std::sqrt(std::max(0.f, 1.f - p1 * p1)) + s * radius * std::sin(phi);
-    const V3f n = p1 * t1 + p2 * t2 + std::sqrt(std::max(0.f, 1.f - p1 * p1 - p2 * p2)) * stretched;
-    return V3f(alpha * n.x, alpha * n.y, std::max(1e-6f, n.z)).normalized();
+AlbedoPlace albedoColumn(float cosine) {
+    return positionOf(cosine, cosineCount);
+}
+
+AlbedoPlace albedoRow(float alpha) {
+    return positionOf(alpha, alphaCount);
+}
+
+LobeAlbedo lobeAlbedo(const AlbedoPlace& column, const AlbedoPlace& row) {
+    const AlbedoTable& table = albedoTable();
+    const LobeAlbedo* low = table.directional[row.below].data() + column.below;
+    const LobeAlbedo* high = table.directional[row.below + 1].data() + column.below;
+    return mix(mix(low[0], low[1], column.weight), mix(high[0], high[1], column.weight), row.weight);
 }
 
 LobeAlbedo lobeAlbedo(float cosine, float alpha) {
-    const AlbedoTable& table = albedoTable();
-    const Position a = positionOf(alpha, alphaCount);
-    const Position c = positionOf(cosine, cosineCount);
-    const auto& low = table.directional[a.below];
-    const auto& high = table.directional[a.below + 1];
-    return mix(mix(low[c.below], low[c.below + 1], c.weight), mix(high[c.below], high[c.below + 1], c.weight),
-               a.weight);
+    return lobeAlbedo(albedoColumn(cosine), albedoRow(alpha));
 }
 
 LobeAlbedo meanLobeAlbedo(float alpha) {
-    const Position a = positionOf(alpha, alphaCount);
+    const AlbedoPlace a = positionOf(alpha, alphaCount);
     return mix(albedoTable().mean[a.below], albedoTable().mean[a.below + 1], a.weight);
 }
 
 float leastLobeAlbedo(float alpha) {
-    const Position a = positionOf(alpha, alphaCount);
+    const AlbedoPlace a = positionOf(alpha, alphaCount);
     return mix(albedoTable().least[a.below], albedoTable().least[a.below + 1], a.weight);
 }
 

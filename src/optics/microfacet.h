@@ -2,18 +2,48 @@
 // The GGX distribution of microfacets (Walter et al. 2007) with Smith's height-correlated shadowing (Heitz 2014).
 // Local frame: z is the normal. All directions are unit vectors with z > 0.
 
+#include "base/turns.h"
+
 #include <Imath/ImathVec.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace patina {
 
 /// D(h), 1/sr.
-float ggxDistribution(const Imath::V3f& half, float alpha);
+inline float ggxDistribution(const Imath::V3f& half, float alpha) {
+    const float a2 = alpha * alpha;
+    // cos² (a² - 1) + 1 = cos² a² + sin²: without the cancellation where alpha is small.
+    const float sine2 = half.x * half.x + half.y * half.y;
+    const float t = half.z * half.z * a2 + sine2;
+    return a2 / (3.14159265358979f * t * t);
+}
 /// Fraction of the microfacets that wo sees which are not hidden.
 float smithMasking(const Imath::V3f& direction, float alpha);
 /// G2(wo, wi) / (4 cos_o cos_i): all of a microfacet BRDF but D and F; finite towards grazing.
 float smithVisibility(const Imath::V3f& wo, const Imath::V3f& wi, float alpha);
 /// A normal in proportion to what wo sees of it (Heitz 2018); its density is smithMasking · D · (wo·h) / cos_o.
-Imath::V3f sampleVisibleNormal(const Imath::V3f& wo, float alpha, float u1, float u2);
+inline Imath::V3f sampleVisibleNormal(const Imath::V3f& wo, float alpha, float u1, float u2) {
+    Imath::V3f stretched(alpha * wo.x, alpha * wo.y, wo.z);
+    const float aside2 = stretched.x * stretched.x + stretched.y * stretched.y;
+    const float scale = 1.f / std::sqrt(aside2 + stretched.z * stretched.z);
+    stretched *= scale;
+    // Two axes across it: (-y, x, 0) made as long as 1, and the cross product with that.
+    const float aside = std::sqrt(aside2) * scale, turned = aside > 1e-7f ? 1.f / aside : 0.f;
+    const float x1 = aside > 1e-7f ? -stretched.y * turned : 1.f, y1 = stretched.x * turned;
+    const Imath::V3f across(-stretched.z * y1, stretched.z * x1, stretched.x * y1 - stretched.y * x1);
+    const float radius = std::sqrt(u1);
+    const CirclePoint direction = circlePoint(u2);
+    const float p1 = radius * direction.cosine, left = std::max(0.f, 1.f - p1 * p1);
+    const float s = 0.5f * (1.f + stretched.z);
+    const float p2 = (1.f - s) * std::sqrt(left) + s * radius * direction.sine;
+    const float p3 = std::sqrt(std::max(0.f, left - p2 * p2));
+    const Imath::V3f n(alpha * (p1 * x1 + p2 * across.x + p3 * stretched.x),
+                       alpha * (p1 * y1 + p2 * across.y + p3 * stretched.y),
+                       std::max(1e-6f, p2 * across.z + p3 * stretched.z));
+    return n * (1.f / std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z));
+}
 
 /// Schlick's (1 - c)^5.
 inline float schlickWeight(float cosine) {
@@ -29,6 +59,14 @@ struct LobeAlbedo {
 };
 /// From a table (40 cosines by 32 alphas) that never says less than the integral, and at most some 0.01 more.
 LobeAlbedo lobeAlbedo(float cosine, float alpha);
+/// The same in two steps, for many of one width or at one angle. Places are in the table.
+struct AlbedoPlace {
+    int below = 0;
+    float weight = 0.f;
+};
+AlbedoPlace albedoColumn(float cosine);
+AlbedoPlace albedoRow(float alpha);
+LobeAlbedo lobeAlbedo(const AlbedoPlace& column, const AlbedoPlace& row);
 /// 2 ∫ albedo c dc.
 LobeAlbedo meanLobeAlbedo(float alpha);
 /// The least of flat + rising over all angles.

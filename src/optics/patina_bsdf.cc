@@ -27,6 +27,7 @@ LobeShape LobeShape::of(const Lobe& lobe) {
     shape.exponent = 1.f / std::max(lobe.roughness, 1e-4f);
     shape.mean = meanLobeAlbedo(shape.alpha);
     shape.least = leastLobeAlbedo(shape.alpha);
+    shape.row = albedoRow(shape.alpha);
     return shape;
 }
 
@@ -49,6 +50,7 @@ void PatinaBsdf::addLobe(const LobeShape& shape, const V3f& colour, const V3f& e
     glossy.airEdge = airEdge;
     glossy.alpha = shape.alpha;
     glossy.exponent = shape.exponent;
+    glossy.row = shape.row;
     if (airEdge > 0.f) {
         meanAir_ += air * shape.mean.flat + airEdge * shape.mean.rising;
         leastAir_ += air * shape.least;
@@ -83,10 +85,14 @@ PatinaBsdf& PatinaBsdf::operator=(const PatinaBsdf& other) {
 }
 
 float PatinaBsdf::passThroughAir(float cosine) const {
+    if (meanAir_ == 0.f) {
+        return 1.f;
+    }
     float reflected = 0.f;
+    const AlbedoPlace column = albedoColumn(cosine);
     for (int k = 0; k < lobeCount_; ++k) {
         if (lobes_[k].airEdge > 0.f) {
-            const LobeAlbedo albedo = lobeAlbedo(cosine, lobes_[k].alpha);
+            const LobeAlbedo albedo = lobeAlbedo(column, lobes_[k].row);
             reflected += lobes_[k].air * albedo.flat + lobes_[k].airEdge * albedo.rising;
         }
     }
@@ -190,8 +196,8 @@ BsdfSample SeenBsdf::sample(const V3f& u) const {
     float choice = u.z * total_ - diffuseChance_;
     if (choice < 0.f || bsdf_.lobeCount_ == 0) {
         const float radius = std::sqrt(u.x);
-        const float phi = 2.f * pi * u.y;
-        result.wi = V3f(radius * std::cos(phi), radius * std::sin(phi), std::sqrt(std::max(0.f, 1.f - u.x)));
+        const CirclePoint direction = circlePoint(u.y);
+        result.wi = V3f(radius * direction.cosine, radius * direction.sine, std::sqrt(std::max(0.f, 1.f - u.x)));
     } else {
         int chosen = 0;
         while (chosen + 1 < bsdf_.lobeCount_ && choice >= lobes_[chosen].chance) {
@@ -203,8 +209,8 @@ BsdfSample SeenBsdf::sample(const V3f& u) const {
         if (bsdf_.model_ == OpticsModel::paper) {
             const float cosine = std::pow(1.f - u.x, 1.f / (lobe.exponent + 1.f));
             const float sine = std::sqrt(std::max(0.f, 1.f - cosine * cosine));
-            const float phi = 2.f * pi * u.y;
-            half = V3f(sine * std::cos(phi), sine * std::sin(phi), cosine);
+            const CirclePoint direction = circlePoint(u.y);
+            half = V3f(sine * direction.cosine, sine * direction.sine, cosine);
         } else {
             half = sampleVisibleNormal(wo_, lobe.alpha, u.x, u.y);
         }

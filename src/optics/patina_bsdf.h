@@ -27,6 +27,7 @@ struct LobeShape {
     float exponent = 3.f; ///< 1/r of the paper
     LobeAlbedo mean;      ///< meanLobeAlbedo()
     float least = 1.f;    ///< leastLobeAlbedo()
+    AlbedoPlace row;      ///< of this width in the table of albedos
 
     static LobeShape of(const Lobe& lobe);
 };
@@ -65,6 +66,7 @@ class PatinaBsdf {
         float airEdge;
         float alpha;
         float exponent; ///< 1/r
+        AlbedoPlace row;
     };
 
     float passThroughAir(float cosine) const;

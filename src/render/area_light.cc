@@ -1,8 +1,10 @@
 #include "render/area_light.h"
 
 #include "base/errors.h"
+#include "base/turns.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace patina {
@@ -31,8 +33,8 @@ V2f pointOn(AreaLight::Shape shape, const V2f& random) {
         return p;
     const bool wide = std::abs(p.x) > std::abs(p.y);
     const float r = wide ? p.x : p.y;
-    const float phi = wide ? 0.25f * pi * p.y / p.x : 0.5f * pi - 0.25f * pi * p.x / p.y;
-    return {r * std::cos(phi), r * std::sin(phi)};
+    const CirclePoint around = circlePoint(wide ? 0.125f * p.y / p.x : 0.25f - 0.125f * p.x / p.y);
+    return {r * around.cosine, r * around.sine};
 }
 
 } // namespace
@@ -54,6 +56,8 @@ V3f AreaLight::radianceAt(float u, float v) const {
 }
 
 AreaLightSet::AreaLightSet(std::vector<AreaLight> lights) : lights_(std::move(lights)) {
+    if (lights_.size() > mostLights)
+        throw RunError("area light", "there are more than 64");
     for (AreaLight& light : lights_) {
         if (light.shape == AreaLight::Shape::disc)
             light.halfHeight = light.halfWidth;
@@ -65,40 +69,37 @@ AreaLightSet::AreaLightSet(std::vector<AreaLight> lights) : lights_(std::move(li
         if (!(light.softEdge >= 0.f && light.softEdge <= 1.f && light.dimming >= 0.f && light.dimming <= 1.f))
             throw RunError("area light", "its edge and dimming must be 0 to 1");
         power_ += double(luminance(light.radiance)) * double(light.area());
+        beacons_.push_back({light.centre, light.frame.normal, luminance(light.radiance) * light.area(),
+                            std::max(light.halfWidth, light.halfHeight)});
     }
 }
 
-float AreaLightSet::weight(std::size_t k, const V3f& position, const V3f& normal) const {
-    const AreaLight& light = lights_[k];
-    const V3f towards = light.centre - position;
-    const float size = std::max(light.halfWidth, light.halfHeight);
-    // No nearer than its size: from close by, other parts of it than the middle are what is seen.
-    const float distance2 = std::max(towards.length2(), size * size), distance = std::sqrt(distance2);
-    if ((-towards ^ light.frame.normal) <= 0.f)
-        return 0.f; // its plane is the border of what sees it
-    // Its middle may lie below the horizon while a part is above it.
-    const float cosine = std::clamp((towards ^ normal) / distance, 0.f, 1.f) + std::min(1.f, size / distance) * 0.5f;
-    const float facing = std::clamp((-towards ^ light.frame.normal) / distance, 0.05f, 1.f);
-    return luminance(light.radiance) * light.area() * cosine * facing / distance2;
-}
-
-float AreaLightSet::density(std::size_t k, const V3f& position, const V3f& normal, float cosine, float distance) const {
+float AreaLightSet::weigh(const V3f& position, const V3f& normal, float* weights) const {
     float total = 0.f;
-    for (std::size_t i = 0; i < lights_.size(); ++i)
-        total += weight(i, position, normal);
-    return weight(k, position, normal) / total * distance * distance / (cosine * lights_[k].area());
+    for (std::size_t k = 0; k < beacons_.size(); ++k) {
+        const Beacon& light = beacons_[k];
+        const V3f towards = light.centre - position;
+        // No nearer than its size: from close by, other parts of it than the middle are what is seen.
+        const float inverse = 1.f / std::sqrt(std::max(towards.length2(), light.size * light.size));
+        // Its middle may lie below the horizon while a part is above it.
+        const float cosine = std::clamp((towards ^ normal) * inverse, 0.f, 1.f) + light.size * inverse * 0.5f;
+        const float front = -(towards ^ light.normal); // its plane is the border of what sees it
+        const float facing = std::clamp(front * inverse, 0.05f, 1.f);
+        weights[k] = front > 0.f ? light.strength * cosine * facing * (inverse * inverse) : 0.f;
+        total += weights[k];
+    }
+    return total;
 }
 
 AreaLightSet::Sample AreaLightSet::sample(const V3f& position, const V3f& normal, V2f random) const {
-    float total = 0.f;
-    for (std::size_t k = 0; k < lights_.size(); ++k)
-        total += weight(k, position, normal);
+    std::array<float, mostLights> weights;
+    const float total = weigh(position, normal, weights.data());
     if (!(total > 0.f))
         return {};
     float left = random.x * total;
     std::size_t chosen = lights_.size();
     for (std::size_t k = 0; k < lights_.size(); ++k) {
-        const float mine = weight(k, position, normal);
+        const float mine = weights[k];
         if (!(mine > 0.f))
             continue;
         chosen = k;
@@ -113,7 +114,7 @@ AreaLightSet::Sample AreaLightSet::sample(const V3f& position, const V3f& normal
     const V3f towards = light.centre + light.frame.tangent * (p.x * light.halfWidth) +
                         light.frame.bitangent * (p.y * light.halfHeight) - position;
     Sample sample;
-    sample.distance = towards.length();
+    sample.distance = std::sqrt(towards.length2());
     if (!(sample.distance > 0.f))
         return {};
     sample.direction = towards / sample.distance;
@@ -121,7 +122,7 @@ AreaLightSet::Sample AreaLightSet::sample(const V3f& position, const V3f& normal
     if (!(cosine > 1e-6f))
         return {};
     sample.radiance = light.radianceAt(p.x, p.y);
-    sample.pdf = weight(chosen, position, normal) / total * sample.distance * sample.distance / (cosine * light.area());
+    sample.pdf = weights[chosen] / total * sample.distance * sample.distance / (cosine * light.area());
     return sample;
 }
 
@@ -141,7 +142,9 @@ std::optional<AreaLightSet::Sample> AreaLightSet::hit(std::size_t k, const V3f& 
                                        (place ^ light.frame.bitangent) / light.halfHeight);
     if (luminance(sample.radiance) == 0.f)
         return {};
-    sample.pdf = density(k, position, normal, cosine, sample.distance);
+    std::array<float, mostLights> weights;
+    const float total = weigh(position, normal, weights.data());
+    sample.pdf = weights[k] / total * sample.distance * sample.distance / (cosine * light.area());
     return sample;
 }
 

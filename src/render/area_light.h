@@ -33,7 +33,8 @@ struct AreaLight {
 class AreaLightSet {
   public:
     AreaLightSet() = default;
-    /// \throws RunError for a light without size, or whose radiance is negative or not finite
+    static constexpr std::size_t mostLights = 64;
+    /// \throws RunError for a light without size, or whose radiance is negative or not finite, or too many lights
     explicit AreaLightSet(std::vector<AreaLight> lights);
 
     bool empty() const { return lights_.empty(); }
@@ -61,12 +62,17 @@ class AreaLightSet {
     Imath::V3f irradiance(const Imath::V3f& position, const Imath::V3f& normal) const;
 
   private:
-    /// Of choosing light k, in proportion; never 0 for one that can be seen from the place.
-    float weight(std::size_t k, const Imath::V3f& position, const Imath::V3f& normal) const;
-    float density(std::size_t k, const Imath::V3f& position, const Imath::V3f& normal, float cosine,
-                  float distance) const;
+    /// What choosing a light asks for.
+    struct Beacon {
+        Imath::V3f centre, normal;
+        float strength; ///< luminance times area
+        float size;     ///< half its longer side
+    };
+    /// Of choosing each light, in proportion; never 0 for one that can be seen from the place. \returns their sum
+    float weigh(const Imath::V3f& position, const Imath::V3f& normal, float* weights) const;
 
     std::vector<AreaLight> lights_;
+    std::vector<Beacon> beacons_; ///< of each light
     double power_ = 0.0;
 };
 

@@ -22,6 +22,11 @@ struct Frame {
     }
 };
 
+/// A vector that is not 0 and not tiny, made as long as 1.
+inline Imath::V3f unit(const Imath::V3f& v) {
+    return v * (1.f / std::sqrt(v.length2()));
+}
+
 /// A frame around a unit normal, without a branch that jumps except at normal.z = 0 (Duff et al. 2017, "Building an
 /// Orthonormal Basis, Revisited", JCGT 6(1)).
 inline Frame frameAround(const Imath::V3f& normal) {

@@ -1,6 +1,7 @@
 #include "render/image_environment.h"
 
 #include "base/errors.h"
+#include "base/turns.h"
 
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
@@ -12,8 +13,6 @@ namespace patina {
 
 namespace {
 
-constexpr float pi = float(M_PI);
-
 float decodedSrgb(float c) {
     return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
 }
@@ -21,7 +20,7 @@ float decodedSrgb(float c) {
 } // namespace
 
 ImageEnvironment::ImageEnvironment(Image panorama, UpAxis up, float turnDegrees, float strength)
-    : panorama_(std::move(panorama)), set_(uprightFrame(up, turnDegrees)), strength_(strength) {
+    : panorama_(std::move(panorama)), set_(uprightFrame(up, turnDegrees)) {
     if (panorama_.height < 2 || panorama_.width != 2 * panorama_.height || panorama_.channels < 3)
         throw RunError("environment", fmt::format("the panorama has {} × {} pixels", panorama_.width, panorama_.height),
                        "it must be twice as wide as high, in colour, in equal steps of azimuth and elevation");
@@ -36,6 +35,8 @@ ImageEnvironment::ImageEnvironment(Image panorama, UpAxis up, float turnDegrees,
                                fmt::format("the panorama's pixel at column {}, row {} is negative or not finite", x, y),
                                "mend the picture: light must be 0 or more");
         }
+    for (float& c : panorama_.pixels)
+        c *= strength;
 }
 
 int ImageEnvironment::looksPerCell() const {
@@ -46,19 +47,18 @@ int ImageEnvironment::looksPerCell() const {
 Imath::V3f ImageEnvironment::radiance(const Imath::V3f& direction) const {
     const Imath::V3f d = set_.toLocal(direction);
     // Ahead, away from the viewer, is +bitangent; to the viewer's right +tangent.
-    const float turn = std::atan2(d.x, d.y) / (2.f * pi) + 0.5f;
-    const float down = std::acos(std::clamp(d.z, -1.f, 1.f)) / pi;
-    const float x = turn * float(panorama_.width) - 0.5f, y = down * float(panorama_.height) - 0.5f;
-    const float left = std::floor(x), top = std::floor(y);
-    const float fx = x - left, fy = y - top;
-    // From -1 to the last: a turn around, and half a pixel. The poles have no other side here.
+    const float x = (turnOf(d.y, d.x) + 0.5f) * float(panorama_.width) + 0.5f;
+    const float y = halfTurnsOfCosine(d.z) * float(panorama_.height) + 0.5f;
+    // Counted from -1: a turn around, and half a pixel. The poles have no other side here.
     const int width = panorama_.width, last = panorama_.height - 1;
-    const int column = int(left) < 0 ? width - 1 : std::min(int(left), width - 1);
+    const int left = int(x) - 1, top = int(y) - 1;
+    const float fx = x - float(left + 1), fy = y - float(top + 1);
+    const int column = left < 0 ? width - 1 : std::min(left, width - 1);
     const int next = column + 1 < width ? column + 1 : 0;
-    const int upper = std::clamp(int(top), 0, last), lower = std::clamp(int(top) + 1, 0, last);
+    const int upper = std::max(top, 0), lower = std::min(top + 1, last);
     const Imath::V3f above = panorama_.rgb(column, upper) * (1.f - fx) + panorama_.rgb(next, upper) * fx;
     const Imath::V3f below = panorama_.rgb(column, lower) * (1.f - fx) + panorama_.rgb(next, lower) * fx;
-    return (above * (1.f - fy) + below * fy) * strength_;
+    return above * (1.f - fy) + below * fy;
 }
 
 Image readPanorama(const std::filesystem::path& path) {

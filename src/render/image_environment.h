@@ -20,9 +20,8 @@ class ImageEnvironment final : public Environment {
     int looksPerCell() const override;
 
   private:
-    Image panorama_;
+    Image panorama_; ///< times the strength
     Frame set_;
-    float strength_;
 };
 
 /// Reads a panorama: OpenEXR, Radiance HDR or any other picture; pictures of 8 or 16 bits are decoded from sRGB.

@@ -1,6 +1,7 @@
 #include "render/lights.h"
 
 #include "base/errors.h"
+#include "base/turns.h"
 
 #include <algorithm>
 
@@ -39,8 +40,14 @@ void appendGuide(std::vector<std::uint8_t>& guide, const float* table, int count
     }
 }
 
-// The entry of a cumulative table that a number in [0, 1) falls into; the number becomes its place within the entry.
-int choose(const float* table, int count, const std::uint8_t* guide, int steps, float& u) {
+struct Choice {
+    int entry;
+    float place;  // of the number within the entry, 0…1
+    float chance; // of the entry
+};
+
+// The entry of a cumulative table that a number in [0, 1) falls into.
+Choice choose(const float* table, int count, const std::uint8_t* guide, int steps, float u) {
     int entry = guide[std::min(int(u * float(steps)), steps - 1)];
     while (entry > 0 && table[entry - 1] > u)
         --entry;
@@ -48,8 +55,7 @@ int choose(const float* table, int count, const std::uint8_t* guide, int steps, 
         ++entry;
     const float below = entry > 0 ? table[entry - 1] : 0.f;
     const float width = table[entry] - below;
-    u = width > 0.f ? std::clamp((u - below) / width, 0.f, 0.999999f) : 0.5f;
-    return entry;
+    return {entry, width > 0.f ? std::clamp((u - below) / width, 0.f, 0.999999f) : 0.5f, width};
 }
 
 } // namespace
@@ -62,9 +68,9 @@ Imath::V3f KeyLight::radiance() const {
 // A direction of the upright frame from its place in a cell, both places 0…1.
 Imath::V3f Lights::cellDirection(int row, int column, float down, float across) const {
     const float z = 2.f * (float(row) + down) / rows - 1.f;
-    const float phi = 2.f * pi * (float(column) + across) / columns;
+    const CirclePoint around = circlePoint((float(column) + across) / columns);
     const float r = std::sqrt(std::max(0.f, 1.f - z * z));
-    return {r * std::cos(phi), r * std::sin(phi), z};
+    return {r * around.cosine, r * around.sine, z};
 }
 
 Lights::Lights(std::shared_ptr<const Environment> environment, std::optional<KeyLight> key, UpAxis up, bool skyOnly)
@@ -162,7 +168,7 @@ float Lights::density(const Table& table, int row, int column) {
     const float* columnsTo = table.columnCumulative.data() + row * columns + column;
     const float ofRow = row > 0 ? rowsTo[0] - rowsTo[-1] : rowsTo[0];
     const float ofColumn = column > 0 ? columnsTo[0] - columnsTo[-1] : columnsTo[0];
-    return ofRow * ofColumn * float(rows * columns / (4.0 * M_PI));
+    return ofRow * ofColumn * cellsPerSteradian;
 }
 
 Lights::Aim Lights::aim(const Imath::V3f& normal) const {
@@ -171,9 +177,8 @@ Lights::Aim Lights::aim(const Imath::V3f& normal) const {
     if (tables_.empty())
         return aim;
     const Imath::V3f n = frame_.toLocal(normal);
-    const int down =
-        std::clamp(int(std::acos(std::clamp(n.z, -1.f, 1.f)) / pi * (normalsDown - 1) + 0.5f), 0, normalsDown - 1);
-    const int around = int((std::atan2(n.y, n.x) / (2.f * pi) + 1.f) * normalsAround + 0.5f) % normalsAround;
+    const int down = std::min(int(halfTurnsOfCosine(n.z) * (normalsDown - 1) + 0.5f), normalsDown - 1);
+    const int around = int((turnOf(n.x, n.y) + 1.f) * normalsAround + 0.5f) % normalsAround;
     aim.table = down * normalsAround + around;
     return aim;
 }
@@ -199,7 +204,7 @@ float Lights::pdf(Source source, Aim aim, const Imath::V3f& direction) const {
         return std::max(aim.normal ^ direction, 0.f) / pi;
     const Imath::V3f d = frame_.toLocal(direction);
     const int row = std::clamp(int(0.5f * (d.z + 1.f) * rows), 0, rows - 1);
-    float turn = std::atan2(d.y, d.x) / (2.f * pi);
+    float turn = turnOf(d.x, d.y);
     turn = turn < 0.f ? turn + 1.f : turn;
     const int column = std::clamp(int(turn * columns), 0, columns - 1);
     return density(tables_[std::size_t(aim.table)], row, column);
@@ -212,29 +217,29 @@ Lights::Sample Lights::sample(Source source, Aim aim, const Imath::V2f& position
         // Uniform in the cone: 1 - cos is uniform.
         const float versine = keyVersine_ * position.x;
         const float r = std::sqrt(std::max(0.f, versine * (2.f - versine)));
-        const float phi = 2.f * pi * position.y;
-        const Imath::V3f direction = keyFrame_.toWorld({r * std::cos(phi), r * std::sin(phi), 1.f - versine});
-        return {direction.normalized(), keyRadiance_, 1.f / (2.f * pi * keyVersine_)};
+        const CirclePoint around = circlePoint(position.y);
+        const Imath::V3f direction = keyFrame_.toWorld({r * around.cosine, r * around.sine, 1.f - versine});
+        return {direction, keyRadiance_, 1.f / (2.f * pi * keyVersine_)};
     }
     if (aim.table < 0) {
         // A point of the sphere that touches the surface from above, seen from where it touches, is as likely as the
         // cosine of its direction.
-        const float z = 1.f - 2.f * position.x, phi = 2.f * pi * position.y;
+        const float z = 1.f - 2.f * position.x;
         const float r = std::sqrt(std::max(0.f, 1.f - z * z));
-        const Imath::V3f d = aim.normal + Imath::V3f(r * std::cos(phi), r * std::sin(phi), z);
-        const float length = d.length();
+        const CirclePoint around = circlePoint(position.y);
+        const Imath::V3f d = aim.normal + Imath::V3f(r * around.cosine, r * around.sine, z);
+        const float length = std::sqrt(d.length2());
         if (!(length > 1e-4f))
             return {aim.normal, Imath::V3f(0.f), 0.f};
         const Imath::V3f direction = d / length;
         return {direction, environment_->radiance(direction), pdf(environment, aim, direction)};
     }
-    float u = position.x, v = position.y;
     const Table& table = tables_[std::size_t(aim.table)];
-    const int row = choose(table.rowCumulative.data(), rows, table.rowGuide.data(), guideSteps, v);
-    const int column = choose(table.columnCumulative.data() + row * columns, columns,
-                              table.columnGuide.data() + row * guideSteps, guideSteps, u);
-    const Imath::V3f direction = frame_.toWorld(cellDirection(row, column, v, u)).normalized();
-    return {direction, environment_->radiance(direction), density(table, row, column)};
+    const Choice row = choose(table.rowCumulative.data(), rows, table.rowGuide.data(), guideSteps, position.y);
+    const Choice column = choose(table.columnCumulative.data() + row.entry * columns, columns,
+                                 table.columnGuide.data() + row.entry * guideSteps, guideSteps, position.x);
+    const Imath::V3f direction = frame_.toWorld(cellDirection(row.entry, column.entry, row.place, column.place));
+    return {direction, environment_->radiance(direction), row.chance * column.chance * cellsPerSteradian};
 }
 
 Imath::V3f Lights::irradiance(const Imath::V3f& normal) const {

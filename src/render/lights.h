@@ -6,6 +6,7 @@
 
 #include <Imath/ImathBox.h>
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -103,6 +104,7 @@ class Lights {
     // Asau 1974).
     static constexpr int columns = 192;
     static constexpr int rows = 96;
+    static constexpr float cellsPerSteradian = float(rows * columns / (4.0 * M_PI));
     static constexpr int guideSteps = 64;
     static constexpr int normalsAround = 18;
     static constexpr int normalsDown = 10;

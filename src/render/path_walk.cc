@@ -114,7 +114,7 @@ bool PathWalk::scatter(const Bsdf& bsdf, const StagePoint& point) {
     }
     lightsDone_ = leavesLightsToShadowRays(bsdf);
     directionPdf_ = next.pdf;
-    direction_ = point.shading.toWorld(next.wi).normalized();
+    direction_ = unit(point.shading.toWorld(next.wi));
     origin_ = point.origin;
     ++depth_;
     return true;

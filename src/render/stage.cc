@@ -1,5 +1,7 @@
 #include "render/stage.h"
 
+#include "base/turns.h"
+
 #include <algorithm>
 #include <limits>
 
@@ -31,9 +33,9 @@ V3f bendTowards(const V3f& normal, const V3f& geometric, const V3f& wo) {
     const float below = least - (mirrored ^ geometric);
     if (below <= 0.f && (wo ^ normal) > 0.f)
         return normal;
-    const V3f lifted = (mirrored + std::max(below, 0.f) * geometric).normalized();
+    const V3f lifted = unit(mirrored + std::max(below, 0.f) * geometric);
     const V3f bent = wo + lifted;
-    return bent.length2() > 1e-8f ? bent.normalized() : geometric;
+    return bent.length2() > 1e-8f ? unit(bent) : geometric;
 }
 
 } // namespace
@@ -44,9 +46,10 @@ BsdfValue SeenLambert::evaluate(const V3f& wi) const {
 
 BsdfSample SeenLambert::sample(const V3f& u) const {
     // Uniform on the disc below, lifted to the hemisphere (Malley): density cos / pi, weight the albedo.
-    const float r = std::sqrt(u.x), phi = 2.f * pi * u.y;
+    const float r = std::sqrt(u.x);
+    const CirclePoint around = circlePoint(u.y);
     const float z = std::sqrt(std::max(0.f, 1.f - u.x));
-    return {{r * std::cos(phi), r * std::sin(phi), z}, z / pi, V3f(albedo)};
+    return {{r * around.cosine, r * around.sine, z}, z / pi, V3f(albedo)};
 }
 
 Stage::Stage(const RenderScene& scene, const Lights& lights) : Stage(scene) {
@@ -147,7 +150,7 @@ void Stage::shadeSurface(const RayScene::Hit& hit, const V3f& direction, bool ba
         normal += mesh.normals[std::size_t(triangle[i])] * (weights[i] * side);
     }
     const V3f geometric = hit.geometricNormal.normalized() * side;
-    normal = normal.length2() > 1e-12f ? normal.normalized() : geometric;
+    normal = normal.length2() > 1e-12f ? unit(normal) : geometric;
     if ((normal ^ geometric) <= 0.f)
         normal = geometric;
 

@@ -151,11 +151,6 @@ struct RayScene::Scene {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
 
-    Hit hitAt(int triangle, float u, float v, float distance) const {
-        const Corners& c = corners[static_cast<std::size_t>(triangle)];
-        return {{triangle, u, v}, distance, (c.b - c.a).cross(c.c - c.a)};
-    }
-
     ~Scene() {
         if (scene)
             rtcReleaseScene(scene);
@@ -232,7 +227,8 @@ std::optional<RayScene::Hit> RayScene::intersect(const V3f& origin, const V3f& d
     rtcIntersect1(scene_->scene, &context.context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return std::nullopt;
-    return scene_->hitAt(static_cast<int>(query.hit.primID), query.hit.u, query.hit.v, query.ray.tfar);
+    const RTCHit& hit = query.hit;
+    return Hit{{static_cast<int>(hit.primID), hit.u, hit.v}, query.ray.tfar, {hit.Ng_x, hit.Ng_y, hit.Ng_z}};
 }
 
 void RayScene::intersect(const Packet& packet, std::optional<Hit>* hits) const {
@@ -252,8 +248,9 @@ void RayScene::intersect(const Packet& packet, std::optional<Hit>* hits) const {
     for (int i = 0; i < packet.count; ++i) {
         hits[i].reset();
         if (query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID)
-            hits[i] =
-                scene_->hitAt(static_cast<int>(query.hit.primID[i]), query.hit.u[i], query.hit.v[i], query.ray.tfar[i]);
+            hits[i] = Hit{{static_cast<int>(query.hit.primID[i]), query.hit.u[i], query.hit.v[i]},
+                          query.ray.tfar[i],
+                          {query.hit.Ng_x[i], query.hit.Ng_y[i], query.hit.Ng_z[i]}};
     }
 }
 
