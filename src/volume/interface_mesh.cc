@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -51,6 +52,10 @@ Imath::V3d slopeAt(const NestSampler& sampler, int k, const Imath::V3d& at) {
     return slope;
 }
 
+Imath::V3f normalOf(const Imath::V3d& slope) {
+    return slope.length() > 0.0 ? Imath::V3f(slope.normalized()) : Imath::V3f(0, 0, 1);
+}
+
 } // namespace
 
 SurfaceMesh interfaceMesh(const LayerVolume& volume, int layer) {
@@ -75,8 +80,7 @@ SurfaceMesh interfaceMesh(const LayerVolume& volume, int layer) {
         const openvdb::Vec3d index = transform.worldToIndex(points[i]);
         const Imath::V3d at(index.x(), index.y(), index.z());
         mesh.positions[i] = Imath::V3f(at * voxelSize);
-        const Imath::V3d slope = slopeAt(sampler, layer, at);
-        mesh.normals[i] = slope.length() > 0.0 ? Imath::V3f(slope.normalized()) : Imath::V3f(0, 0, 1);
+        mesh.normals[i] = normalOf(slopeAt(sampler, layer, at));
     });
     mesh.triangles.reserve(triangles.size() + 2 * quads.size());
     // OpenVDB's are clockwise from outside.
@@ -88,6 +92,29 @@ SurfaceMesh interfaceMesh(const LayerVolume& volume, int layer) {
     }
     mesh.closed = isClosed(mesh.triangles);
     return mesh;
+}
+
+void settleOnInterface(const LayerVolume& volume, int layer, SurfaceMesh& mesh) {
+    const NestSampler sampler(volume.grids());
+    const double voxelSize = volume.scale().voxelSize;
+    tbb::parallel_for(std::size_t(0), mesh.positions.size(), [&](std::size_t i) {
+        const Imath::V3d start = Imath::V3d(mesh.positions[i]) / voxelSize;
+        Imath::V3d at = start, slope = slopeAt(sampler, layer, at);
+        // Newton's steps along the normal; the field is nearly linear over a voxel.
+        bool arrived = false;
+        for (int step = 0; step < 4 && !arrived && slope.length() > 0.0; ++step) {
+            const double away = sampler.value(layer, sampler.locate(at)) / slope.length2();
+            arrived = std::abs(away) * slope.length() < 1e-4;
+            at -= slope * away;
+            slope = slopeAt(sampler, layer, at);
+        }
+        if (!arrived || (at - start).length() > 1.0) {
+            slope = slopeAt(sampler, layer, start);
+        } else {
+            mesh.positions[i] = Imath::V3f(at * voxelSize);
+        }
+        mesh.normals[i] = normalOf(slope);
+    });
 }
 
 std::vector<Imath::V3f> baseNormals(const LayerVolume& volume, const std::vector<Imath::V3f>& points) {

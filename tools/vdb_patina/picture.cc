@@ -73,9 +73,20 @@ struct ShownSurface {
 
     // The voxels' own surface. Its normals are the model's, tilted as the interface is against the base: facets and
     // voxels are no more seen than in the mesh.
-    void takeVolume(const LayerVolume& volume, const Model& model) {
+    // As the mesh is, it is cut into triangles of about a pixel: shading follows the field between the voxels.
+    void takeVolume(const LayerVolume& volume, const Model& model, const View& view, const Turn& turn,
+                    const Options& options) {
         reading = StackReading::vertices;
         shown = interfaceMesh(volume, volume.layerCount());
+        if (options.dice > 0.0) {
+            DiceOptions dice;
+            dice.pictureHeight = view.height;
+            dice.pixelsPerEdge = float(options.dice);
+            dice.toPicture = turn;
+            dice.margin = float(volume.scale().voxelSize);
+            shown = patina::diced(shown, view.camera, dice);
+            settleOnInterface(volume, volume.layerCount(), shown);
+        }
         underVoxels.positions.resize(shown.positions.size());
         underVoxels.normals.resize(shown.positions.size());
         underVoxels.triangles = shown.triangles;
@@ -165,8 +176,6 @@ void writePicture(const LayerVolume& volume, const Model& model, const StackOpti
     const StackOptics colours = optics.in(ColourSpace::rec709); // whatever space the maps are in
     ShownSurface surface;
     const bool ofVolume = options.from == "volume";
-    if (ofVolume)
-        surface.takeVolume(volume, model);
     // Whatever is shown: the same camera for mesh and volume.
     SurfaceMesh sketch = sketchOf(volume, model, colours);
     float highest = 0.f; // above the base
@@ -191,7 +200,9 @@ void writePicture(const LayerVolume& volume, const Model& model, const StackOpti
     if (isInsideVolume(volume, turn.back(view.camera.position())))
         throw RunError("camera", "it stands inside the object",
                        "move it away: a larger distance, or another direction");
-    if (!ofVolume)
+    if (ofVolume)
+        surface.takeVolume(volume, model, view, turn, options);
+    else
         surface.takeMesh(model, view, turn, highest, volume, options);
     const StackShader shader(volume, surface.base(), colours, surface.reading);
     if (!ofVolume)
