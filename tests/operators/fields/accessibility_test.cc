@@ -68,6 +68,24 @@ TEST(Accessibility, TheEdgesOfABoxAreAsAccessibleAsItsFaces) {
     EXPECT_LT(errors.beyondHalf, 0.007);
 }
 
+TEST(Accessibility, ASharpRimStopsNoSphereInABowlNorBesideIt) {
+    const double radius = 14.0;
+    for (const double depth : {4.0, 8.0}) {
+        const auto hollow = [=](const V3d& p) {
+            return radius - std::hypot(std::hypot(p.x, p.y), p.z - radius + depth);
+        };
+        const auto bowl = test::volumeOf([=](const V3d& p) { return std::max(p.z, hollow(p)); }, 40);
+        const Errors errors = compare(*bowl, 30.0, [=](const V3d& p) {
+            if (std::abs(hollow(p)) < 0.05 && p.z < -0.5)
+                return radius;
+            return std::abs(p.z) < 0.2 && std::hypot(p.x, p.y) < 30.0 ? 30.0 : -1.0;
+        });
+        // On the rim itself, whose pieces are straight and whose normals lie between the faces'.
+        EXPECT_LT(errors.beyondHalf, 0.045) << depth;
+        EXPECT_GT(errors.count, 2000);
+    }
+}
+
 TEST(Accessibility, InsideASphereACylinderAndATorusItIsTheirRadius) {
     for (const double radius : {4.0, 9.5, 20.0}) {
         const auto sphere = test::volumeOf([=](const V3d& p) { return radius - p.length(); }, 36);
