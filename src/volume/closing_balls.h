@@ -51,6 +51,8 @@ class ClosingBalls {
         bool holds(std::int32_t s) const;
     };
 
+    static constexpr std::int32_t blocked = -1, freeBlock = -2;
+
     void findShell(Progress& progress);
     void keepReachable();
     void placeCentres(Progress& progress);
