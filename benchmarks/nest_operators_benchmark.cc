@@ -17,6 +17,7 @@
 #include <openvdb/tools/LevelSetFilter.h>
 
 #include <chrono>
+#include <ctime>
 
 namespace patina {
 namespace {
@@ -32,8 +33,7 @@ test::Piece& filmedSphere() {
     static const auto piece = [] {
         auto made = test::makePiece(test::sphere(172.f, 7), test::voxelScale());
         Workpiece work = made->work();
-        const test::FunctionMap map(
-            [](const MapPoint& point) { return 0.5 + 0.5 * std::sin(0.1 * point.position.x); });
+        const test::FunctionMap map([](const MapPoint& point) { return 0.5 + 0.5 * std::sin(0.1 * point.position.x); });
         coat(work, "tarnish_1", 0.005, nullptr, made->progress);
         coat(work, "cuprite_2", 0.03, nullptr, made->progress);
         coat(work, "patina", 0.04, &map, made->progress);
@@ -55,20 +55,23 @@ openvdb::FloatGrid::Ptr movedBase(const LayerVolume& volume, float by) {
 template <typename Ours, typename Theirs>
 void compare(benchmark::State& state, Ours ours, Theirs theirs) {
     test::Piece& piece = filmedSphere();
-    double seconds = 0.0, theirSeconds = 0.0, voxelInterfaces = 0.0;
+    double seconds = 0.0, processor = 0.0, theirSeconds = 0.0, voxelInterfaces = 0.0;
     for (auto _ : state) {
         LayerVolume volume = piece.volume->clone();
         Workpiece work{volume, *piece.binding};
         const double interfaces = volume.layerCount() + 1.0;
-        auto start = Clock::now();
+        const std::clock_t processorStart = std::clock();
+        const auto start = Clock::now();
         ours(work, piece.progress);
         const double taken = secondsSince(start);
         seconds += taken;
+        processor += double(std::clock() - processorStart) / CLOCKS_PER_SEC; // of all threads
         voxelInterfaces += double(piece.volume->activeVoxels()) * interfaces;
         theirSeconds += theirs(piece);
         state.SetIterationTime(taken);
     }
     state.counters["Mvoxel_interfaces_per_s"] = voxelInterfaces / seconds * 1e-6;
+    state.counters["processor_ns"] = processor / voxelInterfaces * 1e9; // for one voxel of one interface
     state.counters["openvdb_ms"] = theirSeconds / double(state.iterations()) * 1e3;
     state.counters["times_openvdb"] = theirSeconds / seconds;
     state.counters["Mvoxels"] = double(piece.volume->activeVoxels()) * 1e-6;
@@ -117,8 +120,7 @@ void FillSameMaterial(benchmark::State& state) {
 }
 void PolishBelowAVoxel(benchmark::State& state) {
     compare(
-        state, [](Workpiece& work, Progress& progress) { polish(work, 0.05, nullptr, progress); },
-        intersectionSeconds);
+        state, [](Workpiece& work, Progress& progress) { polish(work, 0.05, nullptr, progress); }, intersectionSeconds);
 }
 void ErodeBelowAVoxel(benchmark::State& state) {
     compare(
@@ -127,7 +129,9 @@ void ErodeBelowAVoxel(benchmark::State& state) {
 void ErodeByHardness(benchmark::State& state) {
     compare(
         state,
-        [](Workpiece& work, Progress& progress) { erode(work, 0.025, nullptr, {1.0, 2.0, 0.5, 1.5}, progress); },
+        [](Workpiece& work, Progress& progress) {
+            erode(work, 0.025, nullptr, {1.0, 2.0, 0.5, 1.5}, progress);
+        },
         offsetSeconds);
 }
 BENCHMARK(FillBelowAVoxel)->UseManualTime()->Unit(benchmark::kMillisecond);

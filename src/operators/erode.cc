@@ -9,13 +9,16 @@
 #include "volume/leaf_lattice.h"
 #include "volume/material_ids.h"
 #include "volume/nest_grids.h"
+#include "volume/nest_sampler.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
+#include <mutex>
 #include <optional>
 
 namespace patina {
@@ -77,7 +80,7 @@ class EvenShift {
     EvenShift(const Workpiece& work, double thickness)
         : binding_(work.binding), leaves_(leavesOf(std::as_const(work.volume.grids().surface().tree()))),
           lattice_(leaves_), inverseVoxelSize_(static_cast<float>(1.0 / work.volume.scale().voxelSize)),
-          thickness_(static_cast<float>(thickness)), sampler_(work.volume.grids()) {}
+          thickness_(static_cast<float>(thickness)), grids_(work.volume.grids()) {}
 
     // Fills budget[position] for all voxels of leaf n, 0 where they are not active. Within reach of the present and the
     // new surface, and one cell more, every voxel has its own slope; farther away, where no crossing can come by a
@@ -146,8 +149,10 @@ class EvenShift {
 
     // A foot more than a leaf away, in a wide band.
     float far(const Imath::V3f& p) const {
+        // Alone: a thread that waits within for others must not take up another leaf, which would wait for this one.
+        std::call_once(needed_, [this] { tbb::this_task_arena::isolate([this] { sampler_.emplace(grids_); }); });
         Imath::V3d gradient;
-        sampler_.valueAndGradient(sampler_.interfaceCount() - 1, sampler_.locate(Imath::V3d(p)), gradient);
+        sampler_->valueAndGradient(sampler_->interfaceCount() - 1, sampler_->locate(Imath::V3d(p)), gradient);
         return static_cast<float>(gradient.length()) * inverseVoxelSize_;
     }
 
@@ -155,7 +160,9 @@ class EvenShift {
     std::vector<const FloatLeaf*> leaves_;
     LeafLattice lattice_;
     float inverseVoxelSize_, thickness_;
-    NestSampler sampler_;
+    const NestGrids& grids_;
+    mutable std::once_flag needed_;
+    mutable std::optional<NestSampler> sampler_; ///< few models need it
 };
 
 } // namespace
@@ -191,15 +198,6 @@ OperationReport erode(Workpiece& work, double thicknessUm, const ThicknessMap* m
 
     NestGrids& grids = volume.grids();
     const std::size_t layers = grids.interfaces.size();
-    // The budgets of all leaves are read from the surface as it is before any leaf of it changes: leaf by leaf where
-    // they are in `field`; an even shift reads slopes across leaves, so it keeps them.
-    std::unique_ptr<float[]> budgets; // not filled with zeros
-    if (even) {
-        budgets.reset(new float[volume.leafCount() * FloatLeaf::SIZE]);
-        tbb::parallel_for(std::size_t(0), volume.leafCount(),
-                          [&](std::size_t n) { even->read(n, &budgets[n * FloatLeaf::SIZE]); });
-        even.reset();
-    }
     if (metalHardness && !grids.metal)
         grids.metal = grids.base->deepCopy();
     std::vector<std::vector<FloatLeaf*>> leaves{leavesOf(grids.floor().tree())};
@@ -213,6 +211,7 @@ OperationReport erode(Workpiece& work, double thicknessUm, const ThicknessMap* m
     // floor.
     const auto nestOf = [&](std::size_t n) {
         std::vector<float*> nest;
+        nest.reserve(layers + 1);
         for (std::size_t k = 0; k <= layers; ++k)
             nest.push_back(leaves[k][n]->buffer().data());
         return nest;
@@ -221,8 +220,9 @@ OperationReport erode(Workpiece& work, double thicknessUm, const ThicknessMap* m
         const float* const floor = nest[0];
         const float* const top = nest[layers];
         std::copy(top, top + FloatLeaf::SIZE, surface); // also where voxels are not active
-        if (budgets) {
-            float* budget = &budgets[n * FloatLeaf::SIZE];
+        if (even) {
+            alignas(64) float budget[FloatLeaf::SIZE];
+            even->read(n, budget);
             if (walk)
                 walkDown(nest, costs, metalHardness.value_or(1.0), budget, surface);
             else
@@ -269,11 +269,26 @@ OperationReport erode(Workpiece& work, double thicknessUm, const ThicknessMap* m
         stillClosed.emplace(volume, level);
     }
 
+    // Lowers an interface to the new surface; false where it lies deeper anyway.
+    const auto lower = [&](float* phi, const float* surface) {
+        int cuts = 0;
+        for (openvdb::Index pos = 0; pos < FloatLeaf::SIZE; ++pos) {
+            cuts |= surface[pos] > phi[pos];
+            phi[pos] = std::max(phi[pos], surface[pos]);
+        }
+        return cuts != 0;
+    };
+    // An even shift reads the slopes of the present surface in other leaves too, so no leaf of that changes before all
+    // have been read; what lies below changes at once.
+    std::unique_ptr<float[]> surfaces; // not filled with zeros
+    if (even)
+        surfaces.reset(new float[leaves[0].size() * FloatLeaf::SIZE]);
     tbb::parallel_for(std::size_t(0), leaves[0].size(), [&](std::size_t n) {
         const std::vector<float*> nest = nestOf(n);
         const float* const top = nest[layers];
         const FloatLeaf& active = *leaves[0][n];
-        alignas(64) float surface[FloatLeaf::SIZE];
+        alignas(64) float own[FloatLeaf::SIZE];
+        float* const surface = even ? &surfaces[n * FloatLeaf::SIZE] : own;
         erodedSurface(n, nest, surface);
         if (stillClosed)
             forActive(active, [&](openvdb::Index pos) {
@@ -286,18 +301,19 @@ OperationReport erode(Workpiece& work, double thicknessUm, const ThicknessMap* m
         if (!eroded)
             return;
         changed[n] = 1;
+        if (!even)
+            lower(nest[layers], surface);
         const std::size_t lowest = metalHardness ? 0 : 1;
-        for (std::size_t k = layers + 1; k-- > lowest;) {
-            float* phi = nest[k];
-            int cuts = 0;
-            for (openvdb::Index pos = 0; pos < FloatLeaf::SIZE; ++pos) {
-                cuts |= surface[pos] > phi[pos];
-                phi[pos] = std::max(phi[pos], surface[pos]);
-            }
-            if (!cuts)
+        for (std::size_t k = layers; k-- > lowest;)
+            if (!lower(nest[k], surface))
                 break; // what lies below is deeper still
-        }
     });
+    if (even)
+        tbb::parallel_for(std::size_t(0), leaves[0].size(), [&](std::size_t n) {
+            if (changed[n])
+                lower(leaves[layers][n]->buffer().data(), &surfaces[n * FloatLeaf::SIZE]);
+        });
+    surfaces.reset();
 
     if (metalHardness && metalDepthVoxels(volume) == 0.0)
         grids.metal.reset(); // it did not come so far

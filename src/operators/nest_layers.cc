@@ -7,19 +7,20 @@
 
 #include <algorithm>
 #include <atomic>
+#include <utility>
+#include <vector>
 
 namespace patina {
 
 namespace {
 
-// Layer k (from 1) is somewhere. Far from the crossings differences mean nothing: two interfaces that are one there may
-// have been carried outward differently.
-bool isAnywhere(const LayerVolume& volume, int k) {
+// The layer between two interfaces is somewhere. Far from the crossings differences mean nothing: two interfaces that
+// are one there may have been carried outward differently.
+bool isAnywhere(const LayerVolume& volume, const std::vector<const FloatLeaf*>& below,
+                const std::vector<const FloatLeaf*>& here) {
     const double voxelSize = volume.scale().voxelSize;
     const float nothing = static_cast<float>(std::min(1e-6 * voxelSize, 0.5e-3 * volume.scale().unitsPerUm()));
     const float near = static_cast<float>(1.75 * voxelSize);
-    const auto nest = volume.grids().nest();
-    const auto below = leavesOf(nest[k - 1]->tree()), here = leavesOf(nest[k]->tree());
     std::atomic<bool> found{false};
     tbb::parallel_for(std::size_t(0), here.size(), [&](std::size_t n) {
         if (found)
@@ -40,8 +41,11 @@ bool isAnywhere(const LayerVolume& volume, int k) {
 
 bool tidyLayers(LayerVolume& volume) {
     bool removed = false;
+    std::vector<std::vector<const FloatLeaf*>> leaves;
+    for (const openvdb::FloatGrid* grid : volume.grids().nest())
+        leaves.push_back(leavesOf(grid->tree()));
     for (int k = volume.layerCount(); k >= 1; --k)
-        if (!isAnywhere(volume, k)) {
+        if (!isAnywhere(volume, leaves[k - 1], leaves[k])) {
             volume.removeLayer(k);
             removed = true;
         }

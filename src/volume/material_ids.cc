@@ -30,14 +30,26 @@ class LeafGradient {
         const float* around[3][2] = {
             {data(-1, 0, 0), data(1, 0, 0)}, {data(0, -1, 0), data(0, 1, 0)}, {data(0, 0, -1), data(0, 0, 1)}};
         std::copy(&around[0][0], &around[0][0] + 6, &around_[0][0]);
+        whole_ = std::find(&around[0][0], &around[0][0] + 6, nullptr) == &around[0][0] + 6;
     }
 
     Imath::V3d at(int pos) const {
-        return {difference(0, pos, (pos >> 6) & 7, 64), difference(1, pos, (pos >> 3) & 7, 8),
-                difference(2, pos, pos & 7, 1)};
+        const int x = (pos >> 6) & 7, y = (pos >> 3) & 7, z = pos & 7;
+        if (whole_)
+            return {central(0, pos, x, 64), central(1, pos, y, 8), central(2, pos, z, 1)};
+        return {difference(0, pos, x, 64), difference(1, pos, y, 8), difference(2, pos, z, 1)};
     }
 
   private:
+    // Where all six neighbours are there: no branch on which leaf a value is in.
+    double central(int axis, int pos, int along, int stride) const {
+        const float* below = along > 0 ? here_ : around_[axis][0];
+        const float* above = along < 7 ? here_ : around_[axis][1];
+        const int low = along > 0 ? pos - stride : pos + 7 * stride;
+        const int high = along < 7 ? pos + stride : pos - 7 * stride;
+        return (double(above[high]) - double(below[low])) * 0.5;
+    }
+
     // Across the leaf's faces into its neighbour; where there is none, one-sided.
     double difference(int axis, int pos, int along, int stride) const {
         const float* below = along > 0 ? here_ : around_[axis][0];
@@ -50,6 +62,7 @@ class LeafGradient {
 
     const float* here_;
     const float* around_[3][2];
+    bool whole_;
 };
 
 // The line of the normal in a voxel: how steep the surface is, and half the line's length times that (both in scene

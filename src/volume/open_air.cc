@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace patina {
 
@@ -185,26 +186,43 @@ void OpenAir::find(const NestGrids& grids, int top, double voxelSize) {
                 join(parent, node[k], node[k - stride[1]]);
         }
     }
-    for (std::size_t n = 0; n < leaves.size(); ++n) {
-        const openvdb::Coord block(leaves[n]->origin() >> 3);
-        for (int face = 0; face < 6; ++face) {
-            openvdb::Coord next = block;
-            next[face / 2] += face % 2 ? 1 : -1;
-            const bool within = lattice.holds(next.x(), next.y(), next.z());
-            const std::int32_t other = within ? lattice.at(next.x(), next.y(), next.z()) : -1;
-            if (other >= 0 && face % 2 == 0)
-                continue; // between two leaves from the lower one only
-            const int single = within ? other < 0 ? blockNode[lattice.slot(next)] : -1 : 0;
-            for (int a = 0; a < air[n].parts; ++a) {
-                const std::uint64_t mine = air[n].part(a)[face];
-                if (mine && single >= 0)
-                    join(parent, firstNode[n] + a, single);
-                for (int b = 0; mine && other >= 0 && b < air[other].parts; ++b)
-                    if (mine & air[other].part(b)[face ^ 1])
-                        join(parent, firstNode[n] + a, firstNode[other] + b);
+    // What touches is found leaf by leaf, then joined in order. Between two leaves from the lower one only.
+    using Pair = std::pair<int, int>;
+    constexpr std::size_t leavesAtOnce = 256;
+    std::vector<std::vector<Pair>> touching((leaves.size() + leavesAtOnce - 1) / leavesAtOnce);
+    tbb::parallel_for(std::size_t(0), touching.size(), [&](std::size_t batch) {
+        const std::size_t end = std::min(leaves.size(), (batch + 1) * leavesAtOnce);
+        std::vector<Pair>& pairs = touching[batch];
+        const auto touch = [&](int a, int b) {
+            if (pairs.empty() || pairs.back() != Pair(a, b))
+                pairs.emplace_back(a, b);
+        };
+        for (std::size_t n = batch * leavesAtOnce; n < end; ++n) {
+            if (air[n].parts == 0)
+                continue;
+            const openvdb::Coord block(leaves[n]->origin() >> 3);
+            for (int face = 0; face < 6; ++face) {
+                openvdb::Coord next = block;
+                next[face / 2] += face % 2 ? 1 : -1;
+                const bool within = lattice.holds(next.x(), next.y(), next.z());
+                const std::int32_t other = within ? lattice.at(next.x(), next.y(), next.z()) : -1;
+                if (other >= 0 && face % 2 == 0)
+                    continue;
+                const int single = within ? other < 0 ? blockNode[lattice.slot(next)] : -1 : 0;
+                for (int a = 0; a < air[n].parts; ++a) {
+                    const std::uint64_t mine = air[n].part(a)[face];
+                    if (mine && single >= 0)
+                        touch(firstNode[n] + a, single);
+                    for (int b = 0; mine && other >= 0 && b < air[other].parts; ++b)
+                        if (mine & air[other].part(b)[face ^ 1])
+                            touch(firstNode[n] + a, firstNode[other] + b);
+                }
             }
         }
-    }
+    });
+    for (const auto& pairs : touching)
+        for (const Pair& pair : pairs)
+            join(parent, pair.first, pair.second);
     // Of a region: air at a side of the box may go on beyond it.
     if (!grids.sides.empty()) {
         openvdb::CoordBBox inside = grids.sides;
