@@ -197,7 +197,8 @@ int mostLevelSets(const Program& program) {
     return floor + static_cast<int>(pile.most());
 }
 
-Budget estimateBudget(const Program& program, const SurfaceMesh& surface, const VolumeScale& scale, int mapResolution) {
+Budget estimateBudget(const Program& program, const SurfaceMesh& surface, const VolumeScale& scale, int mapResolution,
+                      std::size_t wholeTriangles) {
     Budget budget;
     const double levelSets = mostLevelSets(program);
     const double interiorBand = std::max(4.0, std::ceil(deepestPitVoxels(program, scale)) + 3.0);
@@ -224,7 +225,7 @@ Budget estimateBudget(const Program& program, const SurfaceMesh& surface, const 
     // the program and its libraries. The last two as measured on spheres and the statuette.
     constexpr double programBytes = 150e6, bytesPerTriangle = 270.0, bytesPerPoint = 12.0;
     const double working = budget.activeVoxels * workingBytesPerVoxel(program, scale);
-    const double model = static_cast<double>(surface.triangles.size()) * bytesPerTriangle;
+    const double model = static_cast<double>(surface.triangles.size() + wholeTriangles) * bytesPerTriangle;
     budget.peakBytes = programBytes + model + budget.volumeBytes + budget.activeVoxels * bytesPerPoint +
                        std::max(working, budget.mapBytes);
     budget.diskBytes = budget.allocatedVoxels * 4.0 * (levelSets + 2.0) + size * size * bytesPerTexel;

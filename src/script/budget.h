@@ -5,6 +5,8 @@
 #include "surface/mesh.h"
 #include "volume/layer_volume.h"
 
+#include <cstddef>
+
 namespace patina {
 
 struct Budget {
@@ -23,6 +25,8 @@ int mostLevelSets(const Program& program);
 
 /// From the surface: a band of w voxels around A voxels² of surface holds A w active voxels. The leaves that hold them,
 /// and the nodes above those, are counted along lines across the surface.
-Budget estimateBudget(const Program& program, const SurfaceMesh& surface, const VolumeScale& scale, int mapResolution);
+/// \param wholeTriangles  of a region: those of the whole model, which stays in memory beside it
+Budget estimateBudget(const Program& program, const SurfaceMesh& surface, const VolumeScale& scale, int mapResolution,
+                      std::size_t wholeTriangles = 0);
 
 } // namespace patina

@@ -31,12 +31,15 @@ double peakSaid(const std::string& text) {
 
 class Budget : public testing::Test {
   protected:
-    void expectPeakWithin15Percent(const std::string& model, const std::string& voxels, const std::string& resolution) {
+    void expectPeakWithin15Percent(const std::string& model, const std::string& voxels, const std::string& resolution,
+                                   const std::string& regionAt = {}) {
         SCOPED_TRACE(model + ", " + voxels + " voxels, maps of " + resolution);
         const TemporaryFolder folder;
         folder.file("a.patina", fourLayers);
-        const Arguments run{"run",       "a.patina", model,       "--voxels", voxels, "--resolution", resolution,
-                            "--threads", "2",        "--picture", "0",        "-o",   "out"};
+        Arguments run{"run",       "a.patina", model,       "--voxels", voxels, "--resolution", resolution,
+                      "--threads", "2",        "--picture", "0",        "-o",   "out"};
+        if (!regionAt.empty())
+            run.insert(run.end(), {"--region-at", regionAt});
         Arguments dry = run;
         dry.push_back("--dry-run");
         const Outcome said = vdbPatina(dry, folder.path());
@@ -57,6 +60,12 @@ TEST_F(Budget, OfThePeakIsWithin15PercentWhetherVolumeOrMapsAreLarge) {
     expectPeakWithin15Percent("sphere", "96", "64");
     expectPeakWithin15Percent("sphere", "64", "1024");
     expectPeakWithin15Percent("statuette", "96", "64");
+}
+
+// The whole model stays in memory beside the piece of it, and is most of the peak.
+TEST_F(Budget, OfACloseUpsPeakIsWithin15Percent) {
+    expectPeakWithin15Percent("statuette", "96", "64", "0,0,0,0.03");
+    expectPeakWithin15Percent("sphere", "192", "64", "0,0,0,0.02");
 }
 
 } // namespace

@@ -107,7 +107,10 @@ RunOptions runOptionsOf(const Task& task, const Options& options) {
 void checkBudget(const Task& task, const Options& options, Console& console) {
     if (options.bakeMaps)
         checkCharts(task.model.surface, options.resolution); // told before a long run and not after it
-    const Budget budget = estimateBudget(task.program, task.model.whole ? task.model.whole->work() : task.model.surface, task.model.scale, options.resolution);
+    const RegionModel* whole = task.model.whole.get();
+    const Budget budget =
+        estimateBudget(task.program, whole ? whole->work() : task.model.surface, task.model.scale, options.resolution,
+                       whole ? whole->whole().triangles.size() : 0);
     const double limit = options.budgetGiB > 0.0 ? options.budgetGiB * 1073741824.0 : 0.8 * machineMemoryBytes();
     const std::string text = fmt::format(
         "budget: {:.3g} million voxels in the band, volume {}, peak memory {}, disk {}", budget.activeVoxels * 1e-6,
