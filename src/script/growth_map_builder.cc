@@ -246,9 +246,13 @@ std::optional<MapBuilder::CoatGrowth> MapBuilder::buildVoxelGrowth(const Express
     const bool voxels = context_.region || coarse < 1.01 * context_.voxelSize;
     const double byDefault = voxels ? context_.voxelSize : coarse;
     const bool cubes = !call->cellUm && voxels;
-    if (!growsInVoxels(scale, thicknessUm, historyOf(*call), cubes))
+    const double cell = cellOf(*call, byDefault);
+    std::optional<double> cellVoxels;
+    if (!cubes)
+        cellVoxels = cell / context_.voxelSize;
+    if (!growsInVoxels(scale, thicknessUm, historyOf(*call), cellVoxels))
         return {};
-    auto [cells, options, flux] = setUpGrowth(*call, cellOf(*call, byDefault), false, progress);
+    auto [cells, options, flux] = setUpGrowth(*call, cell, false, progress);
     VoxelGrowth growth;
     growth.options = std::move(options);
     growth.since = call->since;

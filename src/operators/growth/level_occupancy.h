@@ -24,6 +24,11 @@ class LevelOccupancy {
             return false;
         return planes_[std::size_t(level - 1) / 64][cell] >> (std::size_t(level - 1) % 64) & 1u;
     }
+    /// Empties a column.
+    void clear(std::size_t cell) {
+        for (auto& plane : planes_)
+            plane[cell] = 0;
+    }
     /// No level above this is filled.
     std::int32_t levels() const { return static_cast<std::int32_t>(planes_.size()) * 64; }
     std::size_t cells() const { return cells_; }

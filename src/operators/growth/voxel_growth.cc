@@ -1,10 +1,12 @@
 #include "operators/growth/voxel_growth.h"
 
 #include "base/errors.h"
+#include "base/random.h"
 #include "operators/growth/cell_lookup.h"
 #include "operators/growth/growth_map.h"
 #include "operators/growth/nest_relief.h"
 #include "operators/growth/voxel_interface.h"
+#include "operators/growth/voxel_levels.h"
 #include "volume/band.h"
 #include "volume/material_ids.h"
 #include "volume/nest_grids.h"
@@ -124,9 +126,21 @@ Columns porousColumns(const GrowthLattice& lattice, const VoxelGrowth& growth, c
     columns.occupancy = std::move(grown.occupancy);
     columns.height.resize(lattice.size());
     columns.levelVoxels.resize(lattice.size());
+    const KeyedRandom phases(growth.seed, growth.label, "BD/voxels");
     for (std::size_t i = 0; i < lattice.size(); ++i) {
-        columns.levelVoxels[i] = static_cast<float>(levels.levelVoxels * factorAt(growth, i));
+        const double level = levels.levelVoxels * factorAt(growth, i);
+        columns.levelVoxels[i] = static_cast<float>(level);
         columns.height[i] = grown.height[i] * columns.levelVoxels[i];
+        if (!(level > 0.0 && level < 1.0 - tie))
+            continue;
+        const Imath::V3i& key = lattice.keys[i];
+        const auto foot = columns.foot.empty() ? 0 : static_cast<std::int32_t>(columns.foot[i]);
+        columns.height[i] =
+            static_cast<float>(makeVoxelLevels(columns.occupancy, i, foot, static_cast<std::int32_t>(grown.height[i]),
+                                               level, uniformFromWord(phases.words(0, key.x, key.y, key.z)[0])));
+        columns.levelVoxels[i] = 1.f;
+        if (!columns.foot.empty())
+            columns.foot[i] = 0.f;
     }
     return columns;
 }
@@ -193,12 +207,12 @@ void keepClosedAir(const LayerVolume& volume, openvdb::FloatGrid& grown) {
 
 } // namespace
 
-bool growsInVoxels(const VolumeScale& scale, double thicknessUm, const GrowthOptions& options, bool cubes) {
+bool growsInVoxels(const VolumeScale& scale, double thicknessUm, const GrowthOptions& options,
+                   std::optional<double> cellVoxels) {
     const double thickness = thicknessUm * scale.voxelsPerUm();
-    if (options.model == GrowthModel::steadyThickening || thickness < thinnestVoxelGrowth)
-        return false;
-    return options.model != GrowthModel::ballisticDeposition || cubes ||
-           PlaneOfParticles(options).level(thickness) >= 1.0;
+    if (options.model == GrowthModel::ballisticDeposition && cellVoxels)
+        return *cellVoxels > 0.99 && PlaneOfParticles(options).level(thickness) >= flattestParticle * *cellVoxels;
+    return options.model != GrowthModel::steadyThickening && thickness >= thinnestVoxelGrowth;
 }
 
 LevelScale ballisticLevels(const VoxelGrowth& growth, double thicknessVoxels, double cellVoxels) {
@@ -234,13 +248,11 @@ double highestVoxelGrowth(const GrowthOptions& options, double since, double thi
     if (!(plane.top() > 0.0))
         return thicknessVoxels;
     const double level = cellVoxels ? plane.level(thicknessVoxels) : 1.0;
-    if (level < 1.0)
-        return thicknessVoxels;
     const double perMean = thicknessVoxels / plane.top();
     const double grown = plane.mean(options.age()) - plane.mean(growthAge(options.rate, since, options.total));
     // The highest columns stand 6 to 15 levels above the line of the mean velocity.
     const double age = std::min(thicknessVoxels, perMean * grown) / level;
-    return std::max(thicknessVoxels, level * (3.334 * age + 8.0 + 0.12 * age));
+    return std::max(thicknessVoxels, level * (3.334 * age + 8.0 + 0.12 * age) + (level < 1.0 ? 1.0 : 0.0));
 }
 
 VoxelGrowthReport coatByVoxelGrowth(Workpiece& work, const std::string& material, double thicknessUm,

@@ -18,11 +18,18 @@ namespace patina {
 /// thickness (GrowthMap) for coat().
 constexpr double thinnestVoxelGrowth = 4.0;
 
-/// Whether a coat of a growth model belongs in the voxel lattice: all but ST, from thinnestVoxelGrowth on; BD only where
-/// its particles are at least about a voxel high (as drawn; by a closed form within 6 per cent from an age of 4 on).
-/// Voxels cannot hold the pores of thinner ones; as heights of cells they keep thickness, colour and grain.
-/// \param cubes  as VoxelGrowth::cubes: particles are then no lower than a voxel
-bool growsInVoxels(const VolumeScale& scale, double thicknessUm, const GrowthOptions& options, bool cubes);
+/// Particles of BD that are flatter than this (height as drawn to width) are flakes: their layer is a map of thickness at
+/// any size of voxels.
+constexpr double flattestParticle = 0.5;
+
+/// Whether a coat of a growth model belongs in the voxel lattice: all but ST, from thinnestVoxelGrowth on. BD is another
+/// matter where the script gives its particles' size: a column's solid is a number of particles in voxels, the height
+/// of an envelope in a map, and their grains differ (0.7 and 1.7 cells). So the script alone decides, by the shape of a
+/// particle (height by a closed form within 6 per cent from an age of 4 on), not the voxels; but a particle is a voxel
+/// wide at least.
+/// \param cellVoxels  a particle's width, voxels; none: VoxelGrowth::cubes
+bool growsInVoxels(const VolumeScale& scale, double thicknessUm, const GrowthOptions& options,
+                   std::optional<double> cellVoxels);
 
 /// One coat's growth.
 struct VoxelGrowth {
@@ -52,8 +59,8 @@ struct LevelScale {
 /// How a coat of BD of a thickness (voxels as drawn; the largest, as coat() understands it) is made of particles of
 /// `cellVoxels`. Solid per area is what it is on surface cells: thickness * mean / (mean + 3 sigma) of the model's
 /// height, for cubes as that many monolayers of cells, otherwise as the monolayers of the step, each as thick as it
-/// takes, whatever the voxels (but no thinner than 1/16 of one; then fewer arrive). Where a factor makes levels thinner
-/// than voxels (growsInVoxels() keeps whole coats of them out) a voxel takes the state of the level its centre lies in.
+/// takes, whatever the voxels (but no thinner than 1/16 of one; then fewer arrive). Levels thinner than a voxel, by
+/// themselves or by a factor, become levels of one voxel that hold as much (makeVoxelLevels()).
 LevelScale ballisticLevels(const VoxelGrowth& growth, double thicknessVoxels, double cellVoxels);
 
 /// About how high a coat's grown layer will stand at its highest, voxels: never lower than the thickness. BD's pores lift

@@ -101,7 +101,14 @@ float valueBeside(const Neighbourhood& near, float phi, float c, bool porous) {
         if (solid && phi <= 0.f)
             return phi; // what the layer stands on
         // Beside low pores, whose value is their height, particles as low weigh no more.
-        return solid && phi < 1.f ? apart(-phi * particleDepth(near.solidAround)) : 0.f;
+        if (!solid || phi > 1.f + bare)
+            return 0.f;
+        // A particle reaches half a voxel above its centre, and those that stand on the metal begin there, not half a
+        // voxel below: in a crowd they are made as much thinner as they are too high; a lone column (28 and less
+        // around) reads as its volume already. Fitted to layers of one to seven voxels on a plate.
+        const float tooHigh = std::max(0.f, 0.5f + c);
+        const float crowd = std::clamp(static_cast<float>(near.solidAround - 28) / 12.f, 0.f, 1.f);
+        return apart(-std::min(phi, 1.f) * (1.f - 0.55f * tooHigh * crowd) * particleDepth(near.solidAround));
     }
     if (near.top < bare && near.bottom > -bare)
         return phi;

@@ -2,7 +2,10 @@
 // voxels.
 
 #include "operators/growth/grow.h"
+#include "operators/growth/voxel_growth.h"
 #include "operators/growth/voxel_interface.h"
+#include "operators/growth/voxel_levels.h"
+#include "support/test_surfaces.h"
 #include "volume/vdb_file.h"
 
 #include <Imath/ImathVec.h>
@@ -10,6 +13,7 @@
 #include <openvdb/tools/Interpolation.h>
 
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 namespace patina {
@@ -103,6 +107,47 @@ TEST(PorousReading, theInterfaceEnclosesWhatParticlesFill) {
             EXPECT_NEAR(foot, 0.0, 0.1) << name; // voxels
             EXPECT_NEAR(bulk, 1.0, 0.02) << name;
             EXPECT_GT(filled[1] / all[1], 0.25) << name; // a layer is there
+        }
+}
+
+TEST(VoxelLevels, columnsKeepTheirSolidAndOneHistory) {
+    for (const double level : {0.13, 0.42, 0.97})
+        for (const double phase : {0.0, 0.3, 0.99}) {
+            constexpr std::int32_t top = 90, foot = 40;
+            const auto column = [] {
+                LevelOccupancy occupancy(1);
+                for (std::int32_t l = 1; l <= top; ++l)
+                    if (l % 7 < 3 || l % 5 == 1)
+                        occupancy.add(0, l);
+                return occupancy;
+            };
+            const auto count = [](const LevelOccupancy& occupancy, std::int32_t last) {
+                int filled = 0;
+                for (std::int32_t l = 1; l <= last; ++l)
+                    filled += occupancy.holds(0, l);
+                return filled;
+            };
+            LevelOccupancy whole = column(), before = column(), since = column();
+            const double solid = level * count(whole, top);
+            const std::int32_t high = makeVoxelLevels(whole, 0, 0, top, level, phase);
+            EXPECT_EQ(count(whole, 128), int(std::floor(phase + solid)));
+            EXPECT_LE(high, std::ceil(top * level));
+            // What stood there and what has come since are together what the whole is.
+            makeVoxelLevels(before, 0, 0, foot, level, phase);
+            makeVoxelLevels(since, 0, foot, top - foot, level, phase);
+            EXPECT_EQ(count(before, 128) + count(since, 128), count(whole, 128));
+        }
+}
+
+TEST(VoxelLevels, scriptsDecideWhatIsMadeOfParticlesNotVoxels) {
+    GrowthOptions options;
+    options.model = GrowthModel::ballisticDeposition;
+    options.step = options.total = 4;
+    for (const double um : {3.0, 4.6, 20.0})
+        for (const double voxel : {1.0, 0.5, 0.25, 0.1}) {
+            VolumeScale scale = test::voxelScale();
+            scale.voxelSize = voxel;
+            EXPECT_EQ(growsInVoxels(scale, um, options, 1.0 / voxel), um > 4.0) << um << " " << voxel;
         }
 }
 
