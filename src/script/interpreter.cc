@@ -6,11 +6,11 @@
 #include "operators/erode.h"
 #include "operators/fill.h"
 #include "operators/grow_layer.h"
-#include "operators/maps/shifted_map.h"
 #include "operators/material_ratio.h"
 #include "operators/offset.h"
 #include "operators/offset_tangent_sphere.h"
 #include "operators/polish.h"
+#include "operators/maps/shifted_map.h"
 #include "script/map_builder.h"
 #include "volume/region_voxelize.h"
 #include "volume/vdb_file.h"
@@ -170,7 +170,8 @@ class Run {
     void perform(const Coat& action, StatementReport& report) {
         Workpiece work{*volume_, *binding_};
         if (action.map) {
-            const auto grown = maps_->buildVoxelGrowth(*action.map, action.thicknessUm, volume_->scale(), progress_);
+            const auto grown =
+                maps_->buildVoxelGrowth(*action.map, action.thicknessUm, volume_->scale(), progress_);
             if (grown) {
                 maps_->takeStatistics(); // of the maps that steer it
                 const VoxelGrowthReport what = coatByVoxelGrowth(work, action.material, action.thicknessUm,
@@ -204,8 +205,7 @@ class Run {
     void perform(const Grow& action, StatementReport& report) {
         const ThicknessMapPtr map = mapOf(action.map);
         Workpiece work{*volume_, *binding_};
-        report.operation =
-            growLayer(work, action.material, action.thicknessUm, map.get(), progress_, action.everywhere);
+        report.operation = growLayer(work, action.material, action.thicknessUm, map.get(), progress_, action.everywhere);
         report.growths = maps_->takeStatistics();
     }
 
@@ -358,8 +358,8 @@ double thickestStackVoxels(const Program& program, const VolumeScale& scale) {
         } else if (const auto* fill = std::get_if<Fill>(&statement.action)) {
             highest = std::max(highest, fill->heightUm * perUm + ball(fill->aboveSmoothRadiusUm.value_or(0.0)));
         } else if (const auto* offset = std::get_if<Offset>(&statement.action)) {
-            highest +=
-                offset->tangentSphereThicknessUm ? *offset->tangentSphereThicknessUm * perUm : ball(offset->radiusUm);
+            highest += offset->tangentSphereThicknessUm ? *offset->tangentSphereThicknessUm * perUm
+                                                        : ball(offset->radiusUm);
         }
     }
     return highest;
@@ -382,9 +382,9 @@ void declareAbilities(CheckContext& context, const MaterialLibrary& materials) {
     for (const std::string& name : materials.names())
         context.materials.push_back({name, materials.at(name).isMetal});
     context.operators = {"new", "open", "coat", "erode", "grow", "convert", "fill", "polish", "offset", "render"};
-    context.functions = {"texture",    "vertices", "noise",         "turbulence", "slope",   "elevation",
-                         "facing",     "min",      "max",           "clamp",      "mix",     "pow",
-                         "smoothstep", "exposure", "accessibility", "wetness",    "iso9224", "expansion"};
+    context.functions = {"texture",  "vertices",      "noise",  "turbulence", "slope", "elevation", "facing",
+                         "min",      "max",           "clamp",  "mix",        "pow",   "smoothstep",
+                         "exposure", "accessibility", "wetness", "iso9224", "expansion"};
     context.clauses = {"by", "and", "above", "window", "of", "tangent-sphere", "global", "everywhere"};
 }
 
