@@ -226,8 +226,8 @@ Budget estimateBudget(const Program& program, const SurfaceMesh& surface, const 
     constexpr double programBytes = 150e6, bytesPerTriangle = 270.0, bytesPerPoint = 12.0;
     const double working = budget.activeVoxels * workingBytesPerVoxel(program, scale);
     const double model = static_cast<double>(surface.triangles.size() + wholeTriangles) * bytesPerTriangle;
-    budget.peakBytes = programBytes + model + budget.volumeBytes + budget.activeVoxels * bytesPerPoint +
-                       std::max(working, budget.mapBytes);
+    budget.residentBytes = programBytes + model + budget.volumeBytes + budget.activeVoxels * bytesPerPoint;
+    budget.peakBytes = budget.residentBytes + std::max(working, budget.mapBytes);
     budget.diskBytes = budget.allocatedVoxels * 4.0 * (levelSets + 2.0) + size * size * bytesPerTexel;
     return budget;
 }

@@ -14,7 +14,8 @@ struct Budget {
     double allocatedVoxels = 0.0; ///< of all leaves, per grid
     double volumeBytes = 0.0;     ///< of all grids when they are most
     double mapBytes = 0.0;        ///< what baking holds: points of all texels, some rows of all maps
-    double peakBytes = 0.0;       ///< of the process
+    double residentBytes = 0.0;   ///< what stays from beginning to end: program, model, volume
+    double peakBytes = 0.0;       ///< of the process, pictures aside
     double diskBytes = 0.0;       ///< about, uncompressed
 };
 

@@ -32,12 +32,12 @@ double peakSaid(const std::string& text) {
 class Budget : public testing::Test {
   protected:
     void expectPeakWithin15Percent(const std::string& model, const std::string& voxels, const std::string& resolution,
-                                   const std::string& regionAt = {}) {
-        SCOPED_TRACE(model + ", " + voxels + " voxels, maps of " + resolution);
+                                   const std::string& regionAt = {}, const std::string& picture = "0") {
+        SCOPED_TRACE(model + ", " + voxels + " voxels, maps of " + resolution + ", a picture of " + picture);
         const TemporaryFolder folder;
         folder.file("a.patina", fourLayers);
-        Arguments run{"run",       "a.patina", model,       "--voxels", voxels, "--resolution", resolution,
-                      "--threads", "2",        "--picture", "0",        "-o",   "out"};
+        Arguments run{"run", "a.patina",  model,   "--voxels", voxels, "--resolution", resolution, "--threads",
+                      "2",   "--picture", picture, "-o",       "out",  "--samples",    "1"};
         if (!regionAt.empty())
             run.insert(run.end(), {"--region-at", regionAt});
         Arguments dry = run;
@@ -66,6 +66,12 @@ TEST_F(Budget, OfThePeakIsWithin15PercentWhetherVolumeOrMapsAreLarge) {
 TEST_F(Budget, OfACloseUpsPeakIsWithin15Percent) {
     expectPeakWithin15Percent("statuette", "96", "64", "0,0,0,0.03");
     expectPeakWithin15Percent("sphere", "192", "64", "0,0,0,0.02");
+}
+
+// The surface cut to a pixel is most of it.
+TEST_F(Budget, OfAPicturesPeakIsWithin15Percent) {
+    expectPeakWithin15Percent("sphere", "96", "64", {}, "512");
+    expectPeakWithin15Percent("statuette", "96", "64", {}, "640");
 }
 
 } // namespace

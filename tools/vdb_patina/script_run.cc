@@ -4,6 +4,7 @@
 #include "export/texel_map.h"
 #include "outputs.h"
 #include "picture.h"
+#include "picture_budget.h"
 #include "report.h"
 
 #include "base/atomic_file.h"
@@ -64,8 +65,7 @@ Task prepareTask(const std::string& script, const std::string& modelName, const 
     RegionRequest region;
     const std::optional<VolumeScale> scale = scaleOfOpened(program, options, region);
     region.reachVoxels = [&](const VolumeScale& s) {
-        return std::max({4.0, bandOutsideVoxels(program, s),
-                         std::ceil(deepestPitVoxels(program, s)) + 3.0});
+        return std::max({4.0, bandOutsideVoxels(program, s), std::ceil(deepestPitVoxels(program, s)) + 3.0});
     };
     Model model = loadModel(modelName, options, scale ? &*scale : nullptr, console, region);
     if (model.region && !model.whole)
@@ -108,9 +108,9 @@ void checkBudget(const Task& task, const Options& options, Console& console) {
     if (options.bakeMaps)
         checkCharts(task.model.surface, options.resolution); // told before a long run and not after it
     const RegionModel* whole = task.model.whole.get();
-    const Budget budget =
-        estimateBudget(task.program, whole ? whole->work() : task.model.surface, task.model.scale, options.resolution,
-                       whole ? whole->whole().triangles.size() : 0);
+    Budget budget = estimateBudget(task.program, whole ? whole->work() : task.model.surface, task.model.scale,
+                                   options.resolution, whole ? whole->whole().triangles.size() : 0);
+    budget.peakBytes = std::max(budget.peakBytes, budget.residentBytes + pictureBytes(options, task.model));
     const double limit = options.budgetGiB > 0.0 ? options.budgetGiB * 1073741824.0 : 0.8 * machineMemoryBytes();
     const std::string text = fmt::format(
         "budget: {:.3g} million voxels in the band, volume {}, peak memory {}, disk {}", budget.activeVoxels * 1e-6,
@@ -123,7 +123,7 @@ void checkBudget(const Task& task, const Options& options, Console& console) {
         throw Error(ExitCode::budget, "budget",
                     fmt::format("the run needs about {}, {} are allowed; nothing was started",
                                 readableBytes(budget.peakBytes), readableBytes(limit)),
-                    "use fewer --voxels or a smaller --resolution, allow more with --budget, or --force it");
+                    "use fewer --voxels, a smaller --resolution or --picture, allow more with --budget, or --force it");
 }
 
 void warnAboutClamping(const RunResult& result, Console& console) {
