@@ -82,8 +82,11 @@ bool drawText(Image& image, const std::string& words, float x, float y, int heig
     if (!size.defined())
         return false;
     if (maxWidth > 0.f && float(size.width()) > maxWidth) {
-        height = std::max(height / 2, int(float(height) * maxWidth / float(size.width())));
+        const int least = height / 2;
+        height = std::max(least, int(float(height) * maxWidth / float(size.width())));
         size = OIIO::ImageBufAlgo::text_size(text, height, font);
+        for (; height > least && float(size.width()) > maxWidth; --height) // widths are rounded letter by letter
+            size = OIIO::ImageBufAlgo::text_size(text, height - 1, font);
         // Still too long: its last words go.
         for (std::string kept = words; float(size.width()) > maxWidth && kept.find_last_of(' ') != std::string::npos;) {
             kept.erase(kept.find_last_of(' '));

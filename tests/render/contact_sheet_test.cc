@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
 namespace patina {
 namespace {
 
@@ -84,6 +87,24 @@ TEST(ContactSheet, longLabelsFitTheirCell) {
         EXPECT_GT(right - left, 200);
         EXPECT_NEAR(0.5 * (left + right), 700.0, 8.0);
     }
+}
+
+// Down to half its height a label is drawn whole: as it is at one of these heights where nothing limits it.
+TEST(ContactSheet, labelsLoseNoWordsWhileTheyCanShrink) {
+    bool hasFont = false;
+    const auto drawn = [&](int height, float widest) {
+        Image image(900, 60, 3, 1.f);
+        hasFont = drawText(image, "early: step 4 (white: 1.9 mm)", 450.f, 40.f, height, Imath::V3f(0.f),
+                           TextAlign::centre, widest);
+        return image.pixels;
+    };
+    std::vector<std::vector<float>> whole;
+    for (int height = 12; height <= 24; ++height)
+        whole.push_back(drawn(height, 0.f));
+    if (!hasFont)
+        GTEST_SKIP() << "no font is installed";
+    for (float widest = 190.f; widest < 340.f; widest += 3.f)
+        EXPECT_EQ(std::count(whole.begin(), whole.end(), drawn(24, widest)), 1) << widest;
 }
 
 // A µ is a u that goes on below the line, where its left stem is; and it shifts nothing else.
