@@ -344,7 +344,8 @@ BakeSummary bakeInto(MapSink& sink, const LayerVolume& volume, const SurfaceMesh
         options.displacementUnits * (options.keepExaggeration ? 1.0 : 1.0 / volume.scale().exaggeration);
     RowSums sums;
     std::size_t overlapping = 0;
-    TexelMap map = makeTexelMap(walk, options.resolution, options.gutter, summary.tiles.at(0));
+    TexelMap map =
+        makeTexelMap(walk, options.resolution, options.gutter, summary.tiles.empty() ? V2i(0, 0) : summary.tiles[0]);
     const SeamHeights seams(walk, sampler, across, summary.tiles, map, options.gutter);
     progress.checkpoint();
     for (std::size_t i = 0; i < summary.tiles.size(); ++i) {

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 namespace patina {
 
@@ -24,6 +25,7 @@ constexpr std::uint64_t noKey = ~std::uint64_t(0);
 struct Equation {
     std::array<std::uint64_t, 8> keys; // later: places in the list of unknowns
     std::array<float, 8> weights;
+    float squared; // their squares' sum
 };
 
 float jumpOf(const Equation& equation, const std::vector<float>& heights) {
@@ -84,19 +86,14 @@ std::vector<Equation> equationsOf(const SurfaceWalk& walk, const std::vector<V2i
 }
 
 // The point that a texel shows; nullopt beyond the rim.
-struct Shown {
-    SurfacePoint point;
-    bool found = false;
-};
-
-Shown shownAt(const TexelMap& map, std::uint32_t texel) {
+std::optional<SurfacePoint> shownAt(const TexelMap& map, std::uint32_t texel) {
     if (map.points[texel].triangle >= 0)
-        return {map.points[texel], true};
+        return map.points[texel];
     const auto rim = std::lower_bound(map.rim.begin(), map.rim.end(), texel,
                                       [](const RimTexel& item, std::uint32_t value) { return item.texel < value; });
     if (rim != map.rim.end() && rim->texel == texel)
-        return {rim->shown, true};
-    return {};
+        return rim->shown;
+    return std::nullopt;
 }
 
 } // namespace
@@ -128,11 +125,11 @@ SeamHeights::SeamHeights(const SurfaceWalk& walk, const TexelSampler& sampler,
             made = makeTexelMap(walk, map.size, gutterTexels, tiles[tile]);
         const TexelMap& texels = tile > 0 ? made : map;
         tbb::parallel_for(first, last, [&](std::size_t i) {
-            const Shown shown = shownAt(texels, static_cast<std::uint32_t>(keys_[i]));
-            known[i] = shown.found;
-            if (shown.found)
-                heights_[i] = static_cast<float>(
-                    sampler.height(shown.point, pointsAcross[shown.point.triangle], scratch.local()));
+            const auto shown = shownAt(texels, static_cast<std::uint32_t>(keys_[i]));
+            known[i] = shown.has_value();
+            if (shown)
+                heights_[i] =
+                    static_cast<float>(sampler.height(*shown, pointsAcross[shown->triangle], scratch.local()));
         });
     }
 
@@ -145,6 +142,9 @@ SeamHeights::SeamHeights(const SurfaceWalk& walk, const TexelSampler& sampler,
             key = static_cast<std::uint64_t>(std::lower_bound(keys_.begin(), keys_.end(), key) - keys_.begin());
             whole = whole && known[key];
         }
+        equation.squared = 0.f;
+        for (const float weight : equation.weights)
+            equation.squared += weight * weight;
         if (!whole || !(std::abs(jumpOf(equation, heights_)) < apart))
             equation.keys[0] = noKey;
     });
@@ -153,10 +153,7 @@ SeamHeights::SeamHeights(const SurfaceWalk& walk, const TexelSampler& sampler,
         equations.end());
 
     const auto project = [&](const Equation& equation) {
-        float length = 0.f;
-        for (const float weight : equation.weights)
-            length += weight * weight;
-        const float step = jumpOf(equation, heights_) / length;
+        const float step = jumpOf(equation, heights_) / equation.squared;
         for (int i = 0; i < 8; ++i)
             heights_[equation.keys[i]] -= step * equation.weights[i];
     };

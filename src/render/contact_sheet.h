@@ -34,7 +34,8 @@ ContactSheet makeContactSheet(const std::vector<LabelledImage>& images, const Co
 enum class TextAlign { left, centre, right };
 
 /// Draws one line of text; (x, y) is the left end, middle or right end of its baseline. Text wider than `maxWidth`
-/// (where that is above 0) is drawn smaller, down to half its height, then without its last words. \returns false where no font was found.
+/// (where that is above 0) is drawn smaller, down to half its height, then without its last words.
+/// \returns false where no font was found.
 bool drawText(Image& image, const std::string& text, float x, float y, int height, const Imath::V3f& ink,
               TextAlign align = TextAlign::left, float maxWidth = 0.f);
 

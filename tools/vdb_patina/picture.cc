@@ -1,5 +1,6 @@
 #include "picture.h"
 
+#include "picture_budget.h"
 #include "table_pose.h"
 #include "view_input.h"
 
@@ -22,9 +23,6 @@
 namespace patina::tool {
 
 namespace {
-
-// A picture's light takes 12 bytes a pixel, its features 44, their halves as much again.
-constexpr double bytesPerPixel = 160.0;
 
 // The model moved out to where the air begins, as coarse as it is: what the camera is placed by.
 SurfaceMesh sketchOf(const LayerVolume& volume, const Model& model, const StackOptics& optics) {

@@ -16,7 +16,6 @@ namespace {
 // 10 triangles where one square of the longest edge was covered, and each takes so much with its vertices, their
 // stacks, its displaced copy and its tree.
 constexpr double trianglesPerSquare = 7.6, bytesPerTriangle = 275.0;
-constexpr double bytesPerPixel = 160.0; // of the picture itself
 
 } // namespace
 
