@@ -338,9 +338,6 @@ TEST_F(GrowthRun, aFinerRegionAgreesWithTheWholeInItsBlockMeans) {
     const Imath::Box3d box({-8.0, -8.0, 16.0}, {8.0, 8.0, 32.0});
     for (const double um : {2.0, 5.0})
         for (const char* model : {"RD", "RDR", "BD", "DPD"}) {
-            // Columns of RD one voxel wide read thinner than those of two (docs/growth.md).
-            if (um > 4.0 && model == std::string("RD"))
-                continue;
             const std::string text =
                 fmt::format("coat soot {}um texture({}(rate=linear, step=4, total=4, cell=1um{}))", um, model,
                             model == std::string("DPD") ? ", seeding=0.01, patch=4" : "");

@@ -148,6 +148,22 @@ TEST(TwoLattices, solidMassPerAreaIsTheSameInEveryDirection) {
     }
 }
 
+// Columns of RD one, two and three voxels wide: the interface cuts their edges as much as it fills the shafts between.
+TEST(TwoLattices, singleColumnsKeepTheirSolid) {
+    const MaterialLibrary materials = MaterialLibrary::load(PATINA_SOURCE_DIR "/data");
+    for (const auto& [age, um] :
+         {std::pair(4.0, 4.0), std::pair(4.0, 8.0), std::pair(10.0, 5.0), std::pair(40.0, 12.0)})
+        for (const double cell : {1.0, 2.0, 3.0}) {
+            const auto piece = test::makePiece(test::sheet(float(plate), 96), test::voxelScale(), um + 6.0);
+            const GrowthStatistics grown =
+                growOn(*piece, um, growthOf(GrowthModel::randomDeposition, age, age), cell).statistics;
+            const double solid = grown.density * grown.mean * grown.levelUm, read = lookOf(*piece, materials).um;
+            RecordProperty(std::to_string(age) + "_" + std::to_string(um) + "_" + std::to_string(cell),
+                           std::to_string(read / solid));
+            EXPECT_NEAR(read / solid, 1.0, 0.02) << age << " " << um << " " << cell;
+        }
+}
+
 TEST(TwoLattices, levelsThinnerThanAVoxelKeepTheirSolid) {
     const MaterialLibrary materials = MaterialLibrary::load(PATINA_SOURCE_DIR "/data");
     for (const auto& [age, factor] :
