@@ -3,6 +3,8 @@
 #include "base/errors.h"
 #include "base/turns.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -57,7 +59,8 @@ V3f AreaLight::radianceAt(float u, float v) const {
 
 AreaLightSet::AreaLightSet(std::vector<AreaLight> lights) : lights_(std::move(lights)) {
     if (lights_.size() > mostLights)
-        throw RunError("area light", "there are more than 64");
+        throw RunError("area light", fmt::format("there are {}", lights_.size()),
+                       fmt::format("give at most {}", mostLights));
     for (AreaLight& light : lights_) {
         if (light.shape == AreaLight::Shape::disc)
             light.halfHeight = light.halfWidth;

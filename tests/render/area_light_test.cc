@@ -188,6 +188,18 @@ TEST(AreaLight, FarAwayADiscIsAKeyLight) {
     }
 }
 
+TEST(AreaLight, MoreLightsThanASetTakesAreAnError) {
+    std::vector<AreaLight> lights(AreaLightSet::mostLights, disc(1.f, {0, 0, 3}));
+    EXPECT_NO_THROW(AreaLightSet{lights});
+    lights.push_back(lights.back());
+    try {
+        AreaLightSet set(lights);
+        FAIL();
+    } catch (const RunError& error) {
+        EXPECT_NE(std::string(error.what()).find("there are 65"), std::string::npos) << error.what();
+    }
+}
+
 TEST(AreaLight, TheStudioSetIsAsBrightAsTheStudioFarAway) {
     Imath::Box3f object(V3f(-1.f), V3f(1.f));
     const Lights far = studioLights(UpAxis::z), near = studioSet(UpAxis::z, object);
