@@ -3,9 +3,8 @@
 #include "operators/coat.h"
 #include "operators/offset.h"
 
-#include "surface/limit_surface.h"
-#include "surface/mesh_file.h"
 #include "support/exact_volume.h"
+#include "support/statue.h"
 
 #include <benchmark/benchmark.h>
 #include <openvdb/tools/LevelSetFilter.h>
@@ -44,25 +43,21 @@ void CoatFourVoxels(benchmark::State& state) {
     state.counters["ratio"] = librarySeconds / coatSeconds;
     state.counters["voxels"] = double(piece->volume->activeVoxels());
 }
-BENCHMARK(CoatFourVoxels)->Arg(60)->Arg(150)->ArgName("radius")->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(CoatFourVoxels)
+    ->Arg(60)
+    ->Arg(150)
+    ->ArgName("radius")
+    ->Iterations(1)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
 
-// offset by a ball of eight voxels against the steps that vdb_tool -close takes: LevelSetFilter out and in by the radius,
-// fifth-order WENO in space and first order in time. Arguments: voxels along the longest side; whether the library runs.
+// offset by a ball of eight voxels against the steps that vdb_tool -close takes: LevelSetFilter out and in by the
+// radius, fifth-order WENO in space and first order in time. Arguments: voxels along the longest side; whether the
+// library runs.
 void OffsetEightVoxels(benchmark::State& state) {
-    const std::string model = std::string(PATINA_SOURCE_DIR) + "/../shared/data/meshes/happy_buddha_60k_uv.obj";
-    std::unique_ptr<test::Piece> piece;
-    try {
-        LimitSurfaceOptions limit;
-        limit.scheme = SubdivisionScheme::none;
-        SurfaceMesh surface = makeLimitSurface(readMesh(model), limit);
-        Imath::Box3f box;
-        for (const Imath::V3f& p : surface.positions)
-            box.extendBy(p);
-        VolumeScale scale;
-        scale.voxelSize = (box.max - box.min)[box.majorAxis()] / double(state.range(0));
-        piece = test::makePiece(std::move(surface), scale);
-    } catch (const std::exception& error) {
-        state.SkipWithError(error.what());
+    const auto piece = test::makeStatue(static_cast<int>(state.range(0)));
+    if (!piece) {
+        state.SkipWithError("the Happy Buddha is not beside the project");
         return;
     }
     const double radius = 8.0 * piece->volume->scale().voxelSize;

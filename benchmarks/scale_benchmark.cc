@@ -6,9 +6,7 @@
 #include "operators/offset.h"
 #include "operators/polish.h"
 
-#include "support/test_surfaces.h"
-#include "surface/limit_surface.h"
-#include "surface/mesh_file.h"
+#include "support/statue.h"
 #include "volume/nest_grids.h"
 
 #include <benchmark/benchmark.h>
@@ -35,25 +33,12 @@ double peakBytes() {
 // Argument: voxels along the longest side. Run one alone where the peak matters (--benchmark_filter=…/1024): it is the
 // process's, which includes the runs before.
 void SixLayersOnAStatue(benchmark::State& state) {
-    const std::string model = std::string(PATINA_SOURCE_DIR) + "/../shared/data/meshes/happy_buddha_60k_uv.obj";
     for (auto _ : state) {
         const double before = peakBytes();
         const auto begin = Clock::now();
-        std::unique_ptr<test::Piece> piece;
-        try {
-            LimitSurfaceOptions limit;
-            limit.scheme = SubdivisionScheme::none;
-            SurfaceMesh surface = makeLimitSurface(readMesh(model), limit);
-            Imath::Box3f box;
-            for (const Imath::V3f& p : surface.positions)
-                box.extendBy(p);
-            const double side = (box.max - box.min)[box.majorAxis()];
-            VolumeScale scale;
-            scale.voxelSize = side / double(state.range(0));
-            scale.metresPerUnit = 0.2 / side; // a statue of 20 cm
-            piece = test::makePiece(std::move(surface), scale);
-        } catch (const std::exception& error) {
-            state.SkipWithError(error.what());
+        const auto piece = test::makeStatue(static_cast<int>(state.range(0)));
+        if (!piece) {
+            state.SkipWithError("the Happy Buddha is not beside the project");
             return;
         }
         const double voxelized = secondsSince(begin);

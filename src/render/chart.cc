@@ -1,6 +1,7 @@
 #include "render/chart.h"
 
 #include "base/errors.h"
+#include "render/axis_step.h"
 #include "render/contact_sheet.h"
 
 #include <fmt/format.h>
@@ -13,15 +14,6 @@ namespace patina {
 namespace {
 
 const Imath::V3f paper(0.965f, 0.965f, 0.96f), ink(0.13f, 0.13f, 0.14f), rule(0.86f, 0.86f, 0.85f);
-
-// Steps of 1, 2 or 5 times a power of ten, about `count` of them up to `most`.
-double niceStep(double most, int count) {
-    const double raw = most / count, power = std::pow(10.0, std::floor(std::log10(raw)));
-    for (const double m : {1.0, 2.0, 5.0})
-        if (m * power >= raw * (1.0 - 1e-9))
-            return m * power;
-    return 10.0 * power;
-}
 
 double valueAt(const ChartSeries& series, double x) {
     const auto after = std::lower_bound(series.x.begin(), series.x.end(), x);
@@ -92,7 +84,7 @@ Chart drawChart(const std::vector<ChartSeries>& series, const ChartOptions& opti
         xMost = xLeast + 1.0;
     if (!(yMost > 0.0))
         yMost = 1.0;
-    const double xStep = niceStep(xMost - xLeast, 6), yStep = niceStep(yMost, 4);
+    const double xStep = axisStep(xMost - xLeast, 6), yStep = axisStep(yMost, 4);
     yMost = yStep * std::ceil(yMost / yStep - 1e-9);
 
     const int letters = std::clamp(options.width / 44, 10, 24);

@@ -97,8 +97,8 @@ bool drawText(Image& image, const std::string& words, float x, float y, int heig
     }
     const float shift = align == TextAlign::left ? 0.f : align == TextAlign::centre ? 0.5f : 1.f;
     const int left = int(std::lround(x - shift * float(size.width()))), baseline = int(std::lround(y));
-    // Drawn on a line of its own and then laid over the picture: what would lie outside the picture OpenImageIO ends the
-    // program for.
+    // Drawn on a line of its own and then laid over the picture: what would lie outside the picture OpenImageIO ends
+    // the program for.
     Image line(size.width() + 2 * height + 4, 3 * height, 1);
     OIIO::ImageBuf buffer(OIIO::ImageSpec(line.width, line.height, 1, OIIO::TypeDesc::FLOAT), line.pixels.data());
     const float white = 1.f;
@@ -115,6 +115,21 @@ bool drawText(Image& image, const std::string& words, float x, float y, int heig
     for (const std::size_t place : mus)
         drawStem(image, text, place, left, baseline, height, font, ink);
     return drawn;
+}
+
+ContactSheet makeEmptySheet(int width, int height, int letters, const ContactSheetOptions& options, int& top) {
+    const int titleLetters = letters * 3 / 2;
+    top = options.title.empty() ? 0 : 2 * titleLetters;
+    ContactSheet sheet;
+    sheet.image = Image(width, top + height);
+    for (int y = 0; y < sheet.image.height; ++y)
+        for (int x = 0; x < sheet.image.width; ++x)
+            sheet.image.setRgb(x, y, options.paper);
+    // Letters stand a third of their height above the bottom of their band.
+    sheet.hasText = drawText(sheet.image, options.title, 0.5f * float(width),
+                             float(std::max(options.gap, 0)) + 1.25f * float(titleLetters), titleLetters, options.ink,
+                             TextAlign::centre, 0.92f * float(width));
+    return sheet;
 }
 
 ContactSheet makeContactSheet(const std::vector<LabelledImage>& images, const ContactSheetOptions& options) {
@@ -148,19 +163,9 @@ ContactSheet makeContactSheet(const std::vector<LabelledImage>& images, const Co
     const int letters = options.labelHeight > 0 ? options.labelHeight : std::clamp(cellHeight / 20, 12, 40);
     const int gap = std::max(options.gap, 0);
     const int labelBand = labelled ? 2 * letters : 0;
-    const int titleLetters = letters * 3 / 2;
-    const int titleBand = options.title.empty() ? 0 : 2 * titleLetters;
-
-    ContactSheet sheet;
-    sheet.image = Image(gap + columns * (cellWidth + gap), titleBand + gap + lines * (cellHeight + labelBand + gap));
-    for (int y = 0; y < sheet.image.height; ++y)
-        for (int x = 0; x < sheet.image.width; ++x)
-            sheet.image.setRgb(x, y, options.paper);
-
-    // Letters stand a third of their height above the bottom of their band.
-    sheet.hasText =
-        drawText(sheet.image, options.title, 0.5f * float(sheet.image.width), float(gap) + 1.25f * float(titleLetters),
-                 titleLetters, options.ink, TextAlign::centre, 0.92f * float(sheet.image.width));
+    int titleBand = 0;
+    ContactSheet sheet = makeEmptySheet(gap + columns * (cellWidth + gap), gap + lines * (cellHeight + labelBand + gap),
+                                        letters, options, titleBand);
     for (int i = 0; i < count; ++i) {
         const LabelledImage& entry = images[std::size_t(i)];
         const int left = gap + (i % columns) * (cellWidth + gap);

@@ -31,6 +31,12 @@ struct ContactSheet {
 /// \throws RunError where there are none, or one is empty or has not 3 channels.
 ContactSheet makeContactSheet(const std::vector<LabelledImage>& images, const ContactSheetOptions& options = {});
 
+/// A sheet with nothing on it but its title: what the layouts of several pictures begin with.
+/// \param height   pixels below the title
+/// \param letters  height of labels, pixels; the title's are half as high again
+/// \param top      receives the rows that the title takes
+ContactSheet makeEmptySheet(int width, int height, int letters, const ContactSheetOptions& options, int& top);
+
 enum class TextAlign { left, centre, right };
 
 /// Draws one line of text; (x, y) is the left end, middle or right end of its baseline. Text wider than `maxWidth`

@@ -83,16 +83,8 @@ ContactSheet makePlate(const std::vector<PlacedImage>& images, const ContactShee
                 columns.need(entry.column, entry.columns, entry.picture.image.width);
         }
 
-    const int titleLetters = letters * 3 / 2;
-    const int titleBand = options.title.empty() ? 0 : 2 * titleLetters;
-    ContactSheet sheet;
-    sheet.image = Image(columns.total() + 2 * gap, titleBand + rows.total() + 2 * gap);
-    for (int y = 0; y < sheet.image.height; ++y)
-        for (int x = 0; x < sheet.image.width; ++x)
-            sheet.image.setRgb(x, y, options.paper);
-    sheet.hasText =
-        drawText(sheet.image, options.title, 0.5f * float(sheet.image.width), float(gap) + 1.25f * float(titleLetters),
-                 titleLetters, options.ink, TextAlign::centre, 0.92f * float(sheet.image.width));
+    int titleBand = 0;
+    ContactSheet sheet = makeEmptySheet(columns.total() + 2 * gap, rows.total() + 2 * gap, letters, options, titleBand);
     for (const PlacedImage& entry : images) {
         const Image& picture = entry.picture.image;
         const int width = columns.extent(entry.column, entry.columns), height = rows.extent(entry.row, entry.rows);

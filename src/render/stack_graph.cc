@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "base/units.h"
+#include "render/axis_step.h"
 #include "render/contact_sheet.h"
 #include "volume/section_sampler.h"
 #include "volume/stack_probe.h"
@@ -33,14 +34,6 @@ void drawLine(Image& image, double x0, double y0, double x1, double y1) {
         if (x >= 0 && x < image.width && y >= 0 && y < image.height)
             image.setRgb(x, y, image.rgb(x, y) + (ink - image.rgb(x, y)) * 0.5f);
     }
-}
-
-double niceStep(double most, int count) {
-    const double raw = most / count, power = std::pow(10.0, std::floor(std::log10(raw)));
-    for (const double m : {1.0, 2.0, 5.0})
-        if (m * power >= raw * (1.0 - 1e-9))
-            return m * power;
-    return 10.0 * power;
 }
 
 // From `low` to `high`, scene units as drawn.
@@ -102,7 +95,7 @@ StackGraph drawStackGraph(const LayerVolume& volume, const std::vector<SectionMa
         graph.hasText = drawText(image, words, float(x), float(y), letters, ink, align, float(widest)) && graph.hasText;
     };
 
-    const double step = niceStep((high - low) * umPerUnit, 6);
+    const double step = axisStep((high - low) * umPerUnit, 6);
     for (double um = step * std::ceil(low * umPerUnit / step); um <= high * umPerUnit; um += step) {
         const int row = int(std::lround(rowOf(um)));
         fill(image, left, row, left + column + 3 * letters, row + 1, rule);

@@ -3,9 +3,8 @@
 #include "volume/fog_file.h"
 
 #include "base/errors.h"
-#include "operators/coat.h"
+#include "support/coated_ball.h"
 #include "support/temporary_folder.h"
-#include "support/test_surfaces.h"
 #include "volume/nest_grids.h"
 
 #include <gtest/gtest.h>
@@ -17,13 +16,7 @@ namespace {
 
 class FogFileTest : public testing::Test {
   protected:
-    // A ball of 15 voxels under a film of 0.35 and a layer of 1.5 voxels.
-    void SetUp() override {
-        piece_ = test::makePiece(test::sphere(15.f, 4), test::voxelScale());
-        auto work = piece_->work();
-        coat(work, "tarnish_1", 0.35, nullptr, piece_->progress);
-        coat(work, "soot", 1.5, nullptr, piece_->progress);
-    }
+    void SetUp() override { piece_ = test::coatedBall(); }
     openvdb::FloatGrid::Ptr gridOf(const std::string& file, const std::string& name) const {
         openvdb::io::File vdb((folder_ / file).string());
         vdb.open();

@@ -2,9 +2,8 @@
 
 #include "base/atomic_file.h"
 #include "base/errors.h"
-#include "operators/coat.h"
+#include "support/coated_ball.h"
 #include "support/temporary_folder.h"
-#include "support/test_surfaces.h"
 #include "volume/nest_grids.h"
 
 #include <gmock/gmock.h>
@@ -19,10 +18,7 @@ namespace fs = std::filesystem;
 class VdbFileTest : public testing::Test {
   protected:
     void SetUp() override {
-        piece_ = test::makePiece(test::sphere(15.f, 4), test::voxelScale());
-        auto work = piece_->work();
-        coat(work, "tarnish_1", 0.35, nullptr, piece_->progress);
-        coat(work, "soot", 1.5, nullptr, piece_->progress);
+        piece_ = test::coatedBall();
         piece_->volume->provenance.script = "new copper;\n";
         piece_->volume->provenance.seed = 18446744073709551615ull;
     }
