@@ -7,9 +7,8 @@
 
 namespace patina {
 
-DistanceTransform::DistanceTransform(const openvdb::FloatGrid& grid, double voxelSize, double iso,
-                                     const std::vector<std::array<std::uint64_t, 8>>* wanted)
-    : levelSet_(grid), seeds_(makeSurfaceSeeds(levelSet_, voxelSize, iso, wanted)), search_(seeds_.points) {}
+DistanceTransform::DistanceTransform(const openvdb::FloatGrid& grid, double voxelSize, double iso)
+    : levelSet_(grid), seeds_(makeSurfaceSeeds(levelSet_, voxelSize, iso)), search_(seeds_.points) {}
 
 DistanceField distanceToInterface(const LayerVolume& volume, int k, const DistanceOptions& options,
                                   Progress& progress) {

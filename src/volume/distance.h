@@ -17,9 +17,7 @@ namespace patina {
 class DistanceTransform {
   public:
     /// \param iso  scene units
-    /// \param wanted  cells that may have a seed, as makeSurfaceSeeds() takes them; null: all
-    DistanceTransform(const openvdb::FloatGrid& grid, double voxelSize, double iso = 0.0,
-                      const std::vector<std::array<std::uint64_t, 8>>* wanted = nullptr);
+    DistanceTransform(const openvdb::FloatGrid& grid, double voxelSize, double iso = 0.0);
 
     const LevelSetBlocks& levelSet() const { return levelSet_; }
     const SurfaceSeeds& seeds() const { return seeds_; }

@@ -5,6 +5,7 @@
 
 #include <Imath/ImathVec.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -57,7 +58,7 @@ struct PointBlocks {
     std::vector<Block> blocks; ///< those that hold points
     BlockBox lattice;          ///< block to index into `blocks`
     std::vector<float> x, y, z;
-    std::vector<std::uint32_t> blockOf; ///< of each point, index into `blocks`
+    std::vector<std::uint32_t> blockOf; ///< of each point, index into `blocks`; empty where they are too many for it
 
     std::size_t size() const { return x.size(); }
     void resize(std::size_t count) {
@@ -67,9 +68,17 @@ struct PointBlocks {
         blockOf.resize(count);
     }
 
+    const Block& blockOfPoint(std::int32_t point) const {
+        if (!blockOf.empty())
+            return blocks[blockOf[point]];
+        const auto after = std::upper_bound(blocks.begin(), blocks.end(), static_cast<std::uint32_t>(point),
+                                            [](std::uint32_t p, const Block& b) { return p < b.begin; });
+        return *(after - 1);
+    }
+
     /// A point in voxels from another block's origin.
     Imath::V3f from(const openvdb::Coord& block, std::int32_t point) const {
-        const openvdb::Coord apart = blocks[blockOf[point]].block - block;
+        const openvdb::Coord apart = blockOfPoint(point).block - block;
         return {x[point] + 8.f * float(apart.x()), y[point] + 8.f * float(apart.y()),
                 z[point] + 8.f * float(apart.z())};
     }

@@ -5,7 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <utility>
+#include <cmath>
 
 namespace patina {
 
@@ -13,9 +13,18 @@ namespace {
 
 constexpr int padLow = 1, padHigh = 2, padded = 8 + padLow + padHigh; // 11: a cell's corners and what lies around them
 
-struct Seed {
-    float x, y, z;
-    SurfacePatch patch;
+using CellMask = std::array<std::uint64_t, 8>;
+
+/// Which set is looked for: where the interpolant is iso.
+struct Level {
+    float iso, voxelsPerUnit;
+    float nowhere; ///< voxels from iso: where the band ends
+    float near;    ///< scene units: a block with nothing closer to iso needs no look
+
+    Level(const LevelSetBlocks& levelSet, double voxelSize, double isoUnits)
+        : iso(static_cast<float>(isoUnits)), voxelsPerUnit(static_cast<float>(1.0 / voxelSize)),
+          nowhere((0.999f * levelSet.background() - std::abs(iso)) * voxelsPerUnit),
+          near(static_cast<float>(2.0 * voxelSize)) {}
 };
 
 // The trilinear interpolant of eight corners (x slowest) and its gradient.
@@ -122,12 +131,15 @@ SurfacePatch patchAt(const float* at, const float* c, Imath::V3f& p, float nowhe
     return patch;
 }
 
-void seedsOfBlock(const LevelSetBlocks& levelSet, const openvdb::Coord& block, float iso, float voxelsPerUnit,
-                  float nowhere, const std::uint64_t* wanted, std::vector<Seed>& seeds) {
+// Calls visit(i, j, k, at, corners) for each cell of a block that the surface crosses: `at` is the cell's first corner
+// in the padded block, voxels.
+template <typename Visit>
+void forCrossedCells(const LevelSetBlocks& levelSet, const openvdb::Coord& block, const Level& level,
+                     const CellMask* wanted, const Visit& visit) {
     float values[padded * padded * padded];
     levelSet.padded(block, padLow, padHigh, values);
     for (float& v : values)
-        v = (v - iso) * voxelsPerUnit;
+        v = (v - level.iso) * level.voxelsPerUnit;
     const auto corner = [&](int i, int j, int k) {
         return values + ((i + padLow) * padded + j + padLow) * padded + k + padLow;
     };
@@ -145,7 +157,7 @@ void seedsOfBlock(const LevelSetBlocks& levelSet, const openvdb::Coord& block, f
             }
             unsigned mixed = (any | any >> 1) & ~(all & all >> 1) & 0xff;
             if (wanted)
-                mixed &= static_cast<unsigned>(wanted[i] >> (8 * j)) & 0xff;
+                mixed &= static_cast<unsigned>((*wanted)[std::size_t(i)] >> (8 * j)) & 0xff;
             for (int k = 0; k < 8; ++k) {
                 if (!(mixed >> k & 1))
                     continue;
@@ -153,13 +165,14 @@ void seedsOfBlock(const LevelSetBlocks& levelSet, const openvdb::Coord& block, f
                 for (int n = 0; n < 8; ++n)
                     c[n] = *corner(i + (n >> 2), j + ((n >> 1) & 1), k + (n & 1));
                 // Where the band ends (the sides of a region) a change of sign is no surface.
-                if (std::any_of(c, c + 8, [&](float v) { return std::abs(v) >= nowhere; }))
-                    continue;
-                Imath::V3f p = pointInCell(c);
-                const SurfacePatch patch = patchAt(corner(i, j, k), c, p, nowhere);
-                seeds.push_back({float(i) + p.x, float(j) + p.y, float(k) + p.z, patch});
+                if (std::none_of(c, c + 8, [&](float v) { return std::abs(v) >= level.nowhere; }))
+                    visit(i, j, k, corner(i, j, k), c);
             }
         }
+}
+
+openvdb::Coord blockOfLeaf(const LevelSetBlocks& levelSet, std::size_t n) {
+    return openvdb::Coord(levelSet.leaves()[n]->origin() >> 3);
 }
 
 // Whether a block may hold cells that the iso surface crosses.
@@ -182,55 +195,78 @@ bool mayCross(const LevelSetBlocks& levelSet, std::size_t n, float iso, float ne
     return within > 0 && within < 9 * 9 * 9;
 }
 
+// Room for a point in each crossed cell. Cells are counted first, so that nothing is there twice.
+PointBlocks roomForPoints(const LevelSetBlocks& levelSet, const Level& level, const std::vector<CellMask>* wanted) {
+    const std::size_t leaves = levelSet.leaves().size();
+    std::vector<std::uint32_t> count(leaves, 0);
+    tbb::parallel_for(std::size_t(0), leaves, [&](std::size_t n) {
+        if (mayCross(levelSet, n, level.iso, level.near))
+            forCrossedCells(levelSet, blockOfLeaf(levelSet, n), level, wanted ? &(*wanted)[n] : nullptr,
+                            [&](int, int, int, const float*, const float*) { ++count[n]; });
+    });
+    openvdb::CoordBBox box;
+    for (std::size_t n = 0; n < leaves; ++n)
+        if (count[n] > 0)
+            box.expand(blockOfLeaf(levelSet, n));
+    PointBlocks points;
+    points.lattice = BlockBox(box);
+    std::uint32_t total = 0;
+    for (std::size_t n = 0; n < leaves; ++n)
+        if (count[n] > 0) {
+            const openvdb::Coord block = blockOfLeaf(levelSet, n);
+            points.lattice.set(block, static_cast<std::int32_t>(points.blocks.size()));
+            points.blocks.push_back({block, total, total + count[n]});
+            total += count[n];
+        }
+    points.x.resize(total);
+    points.y.resize(total);
+    points.z.resize(total);
+    return points;
+}
+
 } // namespace
 
-SurfaceSeeds makeSurfaceSeeds(const LevelSetBlocks& levelSet, double voxelSize, double iso,
-                              const std::vector<std::array<std::uint64_t, 8>>* wanted) {
-    const std::size_t leaves = levelSet.leaves().size();
-    std::vector<std::vector<Seed>> found(leaves);
-    const auto level = static_cast<float>(iso), voxelsPerUnit = static_cast<float>(1.0 / voxelSize);
-    const float nowhere = (0.999f * levelSet.background() - std::abs(level)) * voxelsPerUnit;
-    const auto near = static_cast<float>(2.0 * voxelSize);
-    tbb::parallel_for(std::size_t(0), leaves, [&](std::size_t n) {
-        if (mayCross(levelSet, n, level, near))
-            seedsOfBlock(levelSet, openvdb::Coord(levelSet.leaves()[n]->origin() >> 3), level, voxelsPerUnit, nowhere,
-                         wanted ? (*wanted)[n].data() : nullptr, found[n]);
-    });
-
+SurfaceSeeds makeSurfaceSeeds(const LevelSetBlocks& levelSet, double voxelSize, double iso) {
+    const Level level(levelSet, voxelSize, iso);
     SurfaceSeeds seeds;
-    openvdb::CoordBBox box;
-    std::vector<std::size_t> start(leaves + 1, 0);
-    for (std::size_t n = 0; n < leaves; ++n) {
-        start[n + 1] = start[n] + found[n].size();
-        if (!found[n].empty())
-            box.expand(openvdb::Coord(levelSet.leaves()[n]->origin() >> 3));
-    }
     PointBlocks& points = seeds.points;
-    points.lattice = BlockBox(box);
-    for (std::size_t n = 0; n < leaves; ++n)
-        if (!found[n].empty()) {
-            const openvdb::Coord block(levelSet.leaves()[n]->origin() >> 3);
-            points.lattice.set(block, static_cast<std::int32_t>(points.blocks.size()));
-            points.blocks.push_back(
-                {block, static_cast<std::uint32_t>(start[n]), static_cast<std::uint32_t>(start[n + 1])});
-        }
-    points.resize(start[leaves]);
-    seeds.patches.resize(start[leaves]);
-    tbb::parallel_for(std::size_t(0), leaves, [&](std::size_t n) {
-        const std::int32_t number =
-            found[n].empty() ? -1 : points.lattice.at(openvdb::Coord(levelSet.leaves()[n]->origin() >> 3));
-        for (std::size_t i = 0; i < found[n].size(); ++i) {
-            const Seed& seed = found[n][i];
-            points.x[start[n] + i] = seed.x;
-            points.y[start[n] + i] = seed.y;
-            points.z[start[n] + i] = seed.z;
-            points.blockOf[start[n] + i] = static_cast<std::uint32_t>(number);
-            seeds.patches[start[n] + i] = seed.patch;
-        }
+    points = roomForPoints(levelSet, level, nullptr);
+    points.blockOf.resize(points.size());
+    seeds.patches.resize(points.size());
+    tbb::parallel_for(std::size_t(0), points.blocks.size(), [&](std::size_t b) {
+        std::size_t next = points.blocks[b].begin;
+        forCrossedCells(levelSet, points.blocks[b].block, level, nullptr,
+                        [&](int i, int j, int k, const float* at, const float* c) {
+                            Imath::V3f p = pointInCell(c);
+                            seeds.patches[next] = patchAt(at, c, p, level.nowhere);
+                            points.x[next] = float(i) + p.x;
+                            points.y[next] = float(j) + p.y;
+                            points.z[next] = float(k) + p.z;
+                            points.blockOf[next++] = static_cast<std::uint32_t>(b);
+                        });
     });
     if (iso == 0.0) // parallel surfaces of sharp edges are round
         sharpenCreases(seeds);
     return seeds;
+}
+
+PointBlocks makeSurfacePoints(const LevelSetBlocks& levelSet, double voxelSize, const std::vector<CellMask>* wanted) {
+    const Level level(levelSet, voxelSize, 0.0);
+    PointBlocks points = roomForPoints(levelSet, level, wanted);
+    tbb::parallel_for(std::size_t(0), points.blocks.size(), [&](std::size_t b) {
+        const PointBlocks::Block& block = points.blocks[b];
+        const std::int32_t leaf = levelSet.lattice().at(block.block.x(), block.block.y(), block.block.z());
+        std::size_t next = block.begin;
+        forCrossedCells(levelSet, block.block, level, wanted ? &(*wanted)[std::size_t(leaf)] : nullptr,
+                        [&](int i, int j, int k, const float*, const float* c) {
+                            constexpr float end = 0.9999f;
+                            const Imath::V3f p = pointInCell(c);
+                            points.x[next] = float(i) + std::min(p.x, end);
+                            points.y[next] = float(j) + std::min(p.y, end);
+                            points.z[next++] = float(k) + std::min(p.z, end);
+                        });
+    });
+    return points;
 }
 
 } // namespace patina

@@ -19,8 +19,8 @@ struct SurfacePatch {
 
     bool crease = false; ///< a piece of a sharp edge instead: S holds its direction (xx xy xz), zero in a corner
     bool convex = false; ///< of a crease: it stands out of the surface
-    /// How far the patch reaches from its point, in voxels: a little further than half the way to the next; less where it
-    /// is so curved that a parabola says little about it (edges).
+    /// How far the patch reaches from its point, in voxels: a little further than half the way to the next; less where
+    /// it is so curved that a parabola says little about it (edges).
     float reach;
     static constexpr float furthestReach = 0.9f, furthestBend = 0.4f;
 
@@ -67,8 +67,12 @@ struct SurfaceSeeds {
 
 /// Seeds on the set where the level set's trilinear interpolant is `iso` (scene units). Seeds are in the order of the
 /// grid's leaves and cells. \param voxelSize  scene units
-/// \param wanted  for each leaf the cells (by their first corner, numbered as voxels) that may have a seed; null: all
-SurfaceSeeds makeSurfaceSeeds(const LevelSetBlocks& levelSet, double voxelSize, double iso = 0.0,
+SurfaceSeeds makeSurfaceSeeds(const LevelSetBlocks& levelSet, double voxelSize, double iso = 0.0);
+
+/// The points alone, of the zero set, without `blockOf`: 12 bytes each instead of 60, for surfaces that fill their
+/// volume. A point lies within its cell, never on the side to the next.
+/// \param wanted  for each leaf the cells (by their first corner, numbered as voxels) that may have a point; null: all
+PointBlocks makeSurfacePoints(const LevelSetBlocks& levelSet, double voxelSize,
                               const std::vector<std::array<std::uint64_t, 8>>* wanted = nullptr);
 
 inline Imath::V3f SurfacePatch::foot(const Imath::V3f& w) const {
@@ -80,8 +84,8 @@ inline Imath::V3f SurfacePatch::foot(const Imath::V3f& w) const {
     const Imath::V3f across = w - normal * height;
     // At the foot u the normal is n + S u, so that across = u + height S u in first order: solve (1 + height S) u =
     // across. Where a concave patch lies beyond its own centre of curvature that has no sense; u = across serves.
-    const float a = 1.f + height * shape[0], b = height * shape[1], c = height * shape[2],
-                d = 1.f + height * shape[3], e = height * shape[4], f = 1.f + height * shape[5];
+    const float a = 1.f + height * shape[0], b = height * shape[1], c = height * shape[2], d = 1.f + height * shape[3],
+                e = height * shape[4], f = 1.f + height * shape[5];
     const float A = d * f - e * e, B = c * e - b * f, C = b * e - c * d;
     const float determinant = a * A + b * B + c * C;
     const bool regular = determinant > 0.1f && a * d - b * b > 0.05f && a > 0.05f;

@@ -67,8 +67,12 @@ std::string LayerVolume::interfaceGridName(int k) const {
 }
 
 void LayerVolume::pushLayer(const std::string& material) {
-    materialId(material);
     grids_->interfaces.push_back(grids_->surface().deepCopy());
+    nameTopLayer(material);
+}
+
+void LayerVolume::nameTopLayer(const std::string& material) {
+    materialId(material);
     layers_.push_back(material);
 }
 

@@ -64,6 +64,8 @@ class LayerVolume {
 
     /// Puts a layer on top whose interface equals the present surface (zero thickness everywhere).
     void pushLayer(const std::string& material);
+    /// Names the layer whose interface a caller has put on top of the grids itself.
+    void nameTopLayer(const std::string& material);
     /// Makes two layers of layer k (k from 1): k keeps its material, k + 1 above it is of `outer` and has zero thickness
     /// everywhere, both interfaces being what k's was.
     void splitLayer(int k, const std::string& outer);

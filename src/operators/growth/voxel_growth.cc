@@ -295,9 +295,12 @@ VoxelGrowthReport coatByVoxelGrowth(Workpiece& work, const std::string& material
         columns = Columns();
         interfaceOfVoxels(volume.grids().surface(), *grown, scale.voxelSize, porous, progress);
         keepClosedAir(volume, *grown);
-        if (!extends)
-            volume.pushLayer(material);
-        volume.grids().interfaces.back() = grown;
+        if (extends) {
+            volume.grids().interfaces.back() = grown;
+        } else {
+            volume.grids().interfaces.push_back(grown);
+            volume.nameTopLayer(material);
+        }
     } else if (!extends) {
         volume.pushLayer(material);
     }

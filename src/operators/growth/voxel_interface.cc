@@ -1,6 +1,6 @@
 #include "operators/growth/voxel_interface.h"
 
-#include "volume/distance.h"
+#include "operators/growth/grown_surface.h"
 #include "volume/leaf_lattice.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -118,8 +118,6 @@ float valueBeside(const Neighbourhood& near, float phi, float c, bool porous) {
         return apart(c);
     return std::abs(c) <= 1.f ? apart(c) : solid ? -0.5f : 0.5f;
 }
-
-using VoxelMask = std::array<std::uint64_t, 8>;
 
 bool holds(const VoxelMask& mask, openvdb::Index pos) {
     return mask[pos >> 6] >> (pos & 63) & 1;
@@ -244,9 +242,10 @@ void interfaceOfVoxels(const openvdb::FloatGrid& surface, openvdb::FloatGrid& gr
             else if (!holds(beside[n].voxels, pos))
                 values[pos] = std::copysign(std::clamp(std::abs(c), 1.f, 1.5f), c <= 0.f ? -1.f : 1.f) * voxelSize;
             else if (!holds(beside[n].porous, pos))
-                values[pos] = beside[n].values[next++];
+                values[pos] = std::min(phi[pos], beside[n].values[next++]);
             else
-                values[pos] = voxelSize * (c > 0.f ? 0.5f : -particleDepth(beside[n].solidAround[nextParticle++]));
+                values[pos] = std::min(
+                    phi[pos], voxelSize * (c > 0.f ? 0.5f : -particleDepth(beside[n].solidAround[nextParticle++])));
         });
         std::vector<float>().swap(beside[n].values);
         std::vector<std::uint8_t>().swap(beside[n].solidAround);
@@ -254,16 +253,13 @@ void interfaceOfVoxels(const openvdb::FloatGrid& surface, openvdb::FloatGrid& gr
     if (!anySurface)
         return;
 
-    // Distances are sought to a level a hair off zero: the sharp creases that belong to level zero alone would take
-    // most of the time among the corners of particles, and mean nothing there.
     std::vector<VoxelMask> cells;
     if (porous)
         cells = cellsNearOthers(phiLeaves, lattice, beside);
-    const DistanceTransform transform(grid, voxelSizeUnits, porous ? 1e-5 * voxelSizeUnits : 0.0,
-                                      porous ? &cells : nullptr);
+    const GrownSurface grown(grid, surface, voxelSizeUnits, porous ? &cells : nullptr);
     std::vector<VoxelMask>().swap(cells);
     progress.checkpoint();
-    // Where nothing was put, phi_n keeps its bits: a distance found anew is off by the chord of a curved surface.
+    // A distance found anew is off by the chord of a curved surface.
     const float slack = 1e-2f * voxelSize;
     tbb::enumerable_thread_specific<NearestInBlock> scratch;
     tbb::parallel_for(std::size_t(0), leaves.size(), [&](std::size_t n) {
@@ -281,19 +277,21 @@ void interfaceOfVoxels(const openvdb::FloatGrid& surface, openvdb::FloatGrid& gr
         if (any) {
             SearchWindow window;
             window.mask = wanted.data();
-            transform.nearest(block, window, near);
+            grown.nearest(block, window, near);
         }
         const float* phi = leaf.buffer().data();
         float* values = leaves[n]->buffer().data();
         forActive(leaf, [&](openvdb::Index pos) {
-            if (!holds(wanted, pos)) {
-                values[pos] = std::min(phi[pos], values[pos]);
+            if (!holds(wanted, pos))
                 return;
-            }
             float value = values[pos];
-            if (near.point[pos] >= 0)
-                value = std::copysign(
-                    transform.toFoot(block, static_cast<int>(pos), near.point[pos]).length() * voxelSize, value);
+            if (near.point[pos] >= 0) {
+                bool bare = false;
+                const float distance = grown.distance(block, static_cast<int>(pos), near.point[pos], bare);
+                // Where nothing was put, phi_n keeps its bits: it is the better distance.
+                value =
+                    bare && (phi[pos] <= 0.f) == (value <= 0.f) ? phi[pos] : std::copysign(distance * voxelSize, value);
+            }
             values[pos] = value < phi[pos] - slack ? value : phi[pos];
         });
     });

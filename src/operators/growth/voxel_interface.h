@@ -10,7 +10,8 @@ namespace patina {
 /// makes no terraces on slanted surfaces.
 ///
 /// \param surface  phi_n, scene units
-/// \param grid     a copy of phi_n that holds c instead, in voxels, and becomes phi_{n+1}: c = phi_n - h, where h is the height above phi_n at which the
+/// \param grid     a copy of phi_n that holds c instead, in voxels, and becomes phi_{n+1}: c = phi_n - h, where h is
+/// the height above phi_n at which the
 ///                 voxel's own column ends. Solid: c <= 0. What lies deeper in the metal than the layer's foot has
 ///                 h = 0.
 /// \param voxelSize  scene units, exactly as in VolumeScale
@@ -22,7 +23,8 @@ namespace patina {
 ///   c            where its neighbourhood is one compact piece: all solid voxels lower than all empty ones, or column
 ///                heights within a voxel of each other;
 ///   c, |c| <= 1  of an uneven compact layer: the top of each column stays where it is, its sides are at ±0.5;
-///   0.5          of a pore (by which updateMaterialIds() knows it), -0.51 to -1.2 of a particle in a porous layer, so that
+///   0.5          of a pore (by which updateMaterialIds() knows it), -0.51 to -1.2 of a particle in a porous layer, so
+///   that
 ///                it reads as the particle's volume; less where its centre lies lower than a voxel above phi_n,
 /// at least 0.02 in size. All others get their true distance to the surface that these make, which moves no
 /// crossing.
