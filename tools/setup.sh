@@ -13,7 +13,7 @@ packages=(
   libopenexr-dev libimath-dev libopenimageio-dev
   libopenmesh-dev libembree-dev libosd-dev
   tao-pegtl-dev libcli11-dev libspdlog-dev libfmt-dev
-  libtomlplusplus-dev nlohmann-json3-dev librandom123-dev libxxhash-dev libeigen3-dev
+  libtomlplusplus-dev nlohmann-json3-dev librandom123-dev libxxhash-dev libdeflate-dev libeigen3-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   fonts-dejavu-core python3
 )

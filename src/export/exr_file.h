@@ -59,6 +59,9 @@ class ExrWriter {
     std::unique_ptr<File> file_;
 };
 
+/// The channels of a map's file: Y, or R, G, B.
+std::vector<const char*> exrChannelNames(int channels);
+
 /// Writes one map atomically. \throws RunError
 void writeExr(const MapImage& map, const std::filesystem::path& path);
 

@@ -1,0 +1,10 @@
+find_path(PATINA_DEFLATE_INCLUDE libdeflate.h)
+find_library(PATINA_DEFLATE deflate)
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(PatinaDeflate REQUIRED_VARS PATINA_DEFLATE PATINA_DEFLATE_INCLUDE)
+if(PatinaDeflate_FOUND AND NOT TARGET Patina::deflate)
+  add_library(Patina::deflate UNKNOWN IMPORTED)
+  set_target_properties(Patina::deflate PROPERTIES
+    IMPORTED_LOCATION "${PATINA_DEFLATE}" INTERFACE_INCLUDE_DIRECTORIES "${PATINA_DEFLATE_INCLUDE}")
+endif()
+mark_as_advanced(PATINA_DEFLATE_INCLUDE PATINA_DEFLATE)
