@@ -1,24 +1,19 @@
 #include "operators/erode.h"
 
+#include "operators/even_shift.h"
 #include "operators/interface_foot.h"
 #include "operators/nest_layers.h"
 #include "operators/sealed_erosion.h"
 #include "operators/shift_field.h"
-#include "operators/slope_reader.h"
 #include "volume/interior_band.h"
 #include "volume/leaf_lattice.h"
 #include "volume/material_ids.h"
 #include "volume/nest_grids.h"
-#include "volume/nest_sampler.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <memory>
-#include <mutex>
 #include <optional>
 
 namespace patina {
@@ -73,97 +68,6 @@ ShiftReach reachOf(const LayerHardness& hardness, std::optional<double> metalHar
         also(*metalHardness);
     return reach;
 }
-
-// g(p) t of the same t everywhere, where the whole stack is a small part of a voxel: p is the model's closest point.
-class EvenShift {
-  public:
-    EvenShift(const Workpiece& work, double thickness)
-        : binding_(work.binding), leaves_(leavesOf(std::as_const(work.volume.grids().surface().tree()))),
-          lattice_(leaves_), inverseVoxelSize_(static_cast<float>(1.0 / work.volume.scale().voxelSize)),
-          thickness_(static_cast<float>(thickness)), grids_(work.volume.grids()) {}
-
-    // Fills budget[position] for all voxels of leaf n, 0 where they are not active. Within reach of the present and the
-    // new surface, and one cell more, every voxel has its own slope; farther away, where no crossing can come by a
-    // shift of this kind, a group of 2³ shares that of its first voxel (slopes vary by half a percent along a surface).
-    void read(std::size_t n, float* budget) const {
-        const SlopeReader slopes(lattice_, leaves_, n, inverseVoxelSize_);
-        const SurfaceMesh& surface = binding_.surface();
-        const FloatLeaf& leaf = *leaves_[n];
-        const VoxelMask active = activeVoxelsOf(leaf), shares = sharers(leaf.buffer().data(), active);
-        // First all feet, then all slopes: the triangles come from all over the memory, and wait for one another less.
-        std::array<Imath::V3f, FloatLeaf::SIZE> foot;
-        std::array<float, FloatLeaf::SIZE> slope;
-        std::array<std::uint16_t, FloatLeaf::SIZE> own;
-        std::size_t owners = 0, at = binding_.leafStart(n);
-        std::fill(budget, budget + FloatLeaf::SIZE, 0.f);
-        forActive(leaf, [&](openvdb::Index pos) {
-            const std::size_t here = at++;
-            if (shares[pos >> 6] >> (pos & 63) & 1)
-                return;
-            const SurfacePoint& under = binding_.at(here);
-            if (under.triangle < 0)
-                return; // the back of a sheet takes nothing
-            const Imath::V3i& corners = surface.triangles[under.triangle];
-            const Imath::V3f& a = surface.positions[corners[0]];
-            foot[owners] =
-                (a + (surface.positions[corners[1]] - a) * under.u + (surface.positions[corners[2]] - a) * under.v) *
-                inverseVoxelSize_;
-            own[owners++] = static_cast<std::uint16_t>(pos);
-        });
-        slopes.read(foot.data(), owners, slope.data());
-        for (std::size_t i = 0; i < owners; ++i)
-            budget[own[i]] = (slope[i] < 0.f ? far(foot[i]) : slope[i]) * thickness_;
-        for (openvdb::Index w = 0; w < 8; ++w)
-            for (std::uint64_t word = shares[w]; word; word &= word - 1) {
-                const openvdb::Index pos = w * 64 + openvdb::util::FindLowestOn(word);
-                budget[pos] = budget[pos & ~openvdb::Index(firstOfGroup)];
-            }
-    }
-
-  private:
-    static constexpr openvdb::Index firstOfGroup = 64 + 8 + 1;
-
-    // The voxels that take the slope of their group's first one: both are active, far, and on one side.
-    VoxelMask sharers(const float* phi, const VoxelMask& active) const {
-        VoxelMask shares{};
-        if (binding_.hasBack())
-            return shares;
-        const float inverse = inverseVoxelSize_, away = 2.f + thickness_ * inverseVoxelSize_;
-        const VoxelMask far = voxelsWhere([=](unsigned i) { return std::abs(phi[i]) * inverse > away; });
-        const VoxelMask outside = voxelsWhere([=](unsigned i) { return phi[i] > 0.f; });
-        constexpr std::uint64_t firsts = 0x0055005500550055ull;
-        const auto spread = [](std::uint64_t word) {
-            word &= firsts;
-            word |= word << 1;
-            return word | word << 8;
-        };
-        for (unsigned w = 0; w < 8; ++w) {
-            const unsigned first = w & ~1u;
-            shares[w] =
-                active[w] & far[w] & spread(active[first] & far[first]) & ~(spread(outside[first]) ^ outside[w]);
-            if (w == first)
-                shares[w] &= ~firsts;
-        }
-        return shares;
-    }
-
-    // A foot more than a leaf away, in a wide band.
-    float far(const Imath::V3f& p) const {
-        // Alone: a thread that waits within for others must not take up another leaf, which would wait for this one.
-        std::call_once(needed_, [this] { tbb::this_task_arena::isolate([this] { sampler_.emplace(grids_); }); });
-        Imath::V3d gradient;
-        sampler_->valueAndGradient(sampler_->interfaceCount() - 1, sampler_->locate(Imath::V3d(p)), gradient);
-        return static_cast<float>(gradient.length()) * inverseVoxelSize_;
-    }
-
-    const SurfaceBinding& binding_;
-    std::vector<const FloatLeaf*> leaves_;
-    LeafLattice lattice_;
-    float inverseVoxelSize_, thickness_;
-    const NestGrids& grids_;
-    mutable std::once_flag needed_;
-    mutable std::optional<NestSampler> sampler_; ///< few models need it
-};
 
 } // namespace
 
@@ -279,16 +183,16 @@ OperationReport erode(Workpiece& work, double thicknessUm, const ThicknessMap* m
         return cuts != 0;
     };
     // An even shift reads the slopes of the present surface in other leaves too, so no leaf of that changes before all
-    // have been read; what lies below changes at once.
-    std::unique_ptr<float[]> surfaces; // not filled with zeros
+    // have been read: a new one waits in a buffer of its own, which then takes the old one's place. What lies below
+    // changes at once.
+    std::vector<FloatLeaf::Buffer> newTop;
     if (even)
-        surfaces.reset(new float[leaves[0].size() * FloatLeaf::SIZE]);
+        newTop = std::vector<FloatLeaf::Buffer>(leaves[0].size(), FloatLeaf::Buffer(openvdb::PartialCreate(), 0.f));
     tbb::parallel_for(std::size_t(0), leaves[0].size(), [&](std::size_t n) {
         const std::vector<float*> nest = nestOf(n);
         const float* const top = nest[layers];
         const FloatLeaf& active = *leaves[0][n];
-        alignas(64) float own[FloatLeaf::SIZE];
-        float* const surface = even ? &surfaces[n * FloatLeaf::SIZE] : own;
+        alignas(64) float surface[FloatLeaf::SIZE];
         erodedSurface(n, nest, surface);
         if (stillClosed)
             forActive(active, [&](openvdb::Index pos) {
@@ -301,19 +205,24 @@ OperationReport erode(Workpiece& work, double thicknessUm, const ThicknessMap* m
         if (!eroded)
             return;
         changed[n] = 1;
-        if (!even)
+        if (even) {
+            newTop[n].allocate();
+            float* const raised = newTop[n].data();
+            for (openvdb::Index pos = 0; pos < FloatLeaf::SIZE; ++pos)
+                raised[pos] = std::max(top[pos], surface[pos]);
+        } else {
             lower(nest[layers], surface);
+        }
         const std::size_t lowest = metalHardness ? 0 : 1;
         for (std::size_t k = layers; k-- > lowest;)
             if (!lower(nest[k], surface))
                 break; // what lies below is deeper still
     });
     if (even)
-        tbb::parallel_for(std::size_t(0), leaves[0].size(), [&](std::size_t n) {
+        for (std::size_t n = 0; n < leaves[0].size(); ++n)
             if (changed[n])
-                lower(leaves[layers][n]->buffer().data(), &surfaces[n * FloatLeaf::SIZE]);
-        });
-    surfaces.reset();
+                leaves[layers][n]->swap(newTop[n]);
+    newTop.clear();
 
     if (metalHardness && metalDepthVoxels(volume) == 0.0)
         grids.metal.reset(); // it did not come so far

@@ -27,6 +27,12 @@ bool isAnywhere(const LayerVolume& volume, const std::vector<const FloatLeaf*>& 
             return;
         const float* inner = below[n]->buffer().data();
         const float* outer = here[n]->buffer().data();
+        // Most leaves say no: seen in a plain loop over active voxels and others.
+        int perhaps = 0;
+        for (openvdb::Index pos = 0; pos < FloatLeaf::SIZE; ++pos)
+            perhaps |= (inner[pos] - outer[pos] > nothing) & (outer[pos] < near) & (inner[pos] > -near);
+        if (!perhaps)
+            return;
         bool any = false;
         forActive(*here[n], [&](openvdb::Index pos) {
             any |= (inner[pos] - outer[pos] > nothing) & (outer[pos] < near) & (inner[pos] > -near);

@@ -3,6 +3,10 @@
 
 #include "volume/nest_grids.h"
 
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -71,6 +75,55 @@ inline VoxelMask voxelsWhere(Test test) {
         mask[w] = word;
     }
     return mask;
+}
+
+/// The voxels whose value is above a level: as voxelsWhere, several times as fast where four values are compared at
+/// once.
+inline VoxelMask voxelsAbove(const float* values, float level) {
+#if defined(__SSE2__)
+    VoxelMask mask;
+    const __m128 bound = _mm_set1_ps(level);
+    for (unsigned w = 0; w < 8; ++w) {
+        std::uint64_t word = 0;
+        for (unsigned part = 0; part < 4; ++part) {
+            const float* from = values + 64 * w + 16 * part;
+            const auto above = [&](unsigned i) {
+                return _mm_castps_si128(_mm_cmpgt_ps(_mm_loadu_ps(from + i), bound));
+            };
+            const __m128i bytes =
+                _mm_packs_epi16(_mm_packs_epi32(above(0), above(4)), _mm_packs_epi32(above(8), above(12)));
+            word |= std::uint64_t(unsigned(_mm_movemask_epi8(bytes))) << (16 * part);
+        }
+        mask[w] = word;
+    }
+    return mask;
+#else
+    return voxelsWhere([=](unsigned i) { return values[i] > level; });
+#endif
+}
+
+/// The voxels whose value is another one, likewise.
+inline VoxelMask voxelsOtherThan(const std::int32_t* values, std::int32_t one) {
+#if defined(__SSE2__)
+    VoxelMask mask;
+    const __m128i same = _mm_set1_epi32(one);
+    for (unsigned w = 0; w < 8; ++w) {
+        std::uint64_t word = 0;
+        for (unsigned part = 0; part < 4; ++part) {
+            const std::int32_t* from = values + 64 * w + 16 * part;
+            const auto equal = [&](unsigned i) {
+                return _mm_cmpeq_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from + i)), same);
+            };
+            const __m128i bytes =
+                _mm_packs_epi16(_mm_packs_epi32(equal(0), equal(4)), _mm_packs_epi32(equal(8), equal(12)));
+            word |= std::uint64_t(unsigned(_mm_movemask_epi8(bytes))) << (16 * part);
+        }
+        mask[w] = ~word;
+    }
+    return mask;
+#else
+    return voxelsWhere([=](unsigned i) { return values[i] != one; });
+#endif
 }
 
 template <typename Leaf>

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -114,6 +115,7 @@ std::size_t updateMaterialIds(LayerVolume& volume, double presenceUm, const std:
     };
 
     const float air = static_cast<float>(0.9 * voxelSize), deep = -air;
+    const float deepest = std::nextafter(deep, -std::numeric_limits<float>::infinity()); // above it is deep or more
     std::vector<std::size_t> changed(top.size(), 0);
     // The value that growth in voxels gives to an empty voxel beside particles: a pore stays air, even where the
     // interface cuts its corners.
@@ -136,10 +138,8 @@ std::size_t updateMaterialIds(LayerVolume& volume, double presenceUm, const std:
             }
         };
         const VoxelMask active = activeVoxelsOf(*top[n]);
-        const VoxelMask outside = voxelsWhere([=](unsigned i) { return surface[i] > air; });
-        const VoxelMask within = voxelsWhere([=](unsigned i) { return floor[i] < deep; });
-        const VoxelMask notAir = voxelsWhere([=](unsigned i) { return leafIds[i] != 0; });
-        const VoxelMask notMetal = voxelsWhere([=](unsigned i) { return leafIds[i] != 1; });
+        const VoxelMask outside = voxelsAbove(surface, air), notWithin = voxelsAbove(floor, deepest);
+        const VoxelMask notAir = voxelsOtherThan(leafIds, 0), notMetal = voxelsOtherThan(leafIds, 1);
         std::array<std::uint16_t, 512> voxels;
         int count = 0;
         for (openvdb::Index w = 0; w < 8; ++w) {
@@ -147,7 +147,7 @@ std::size_t updateMaterialIds(LayerVolume& volume, double presenceUm, const std:
                 for (; word; word &= word - 1)
                     what(w * 64 + openvdb::util::FindLowestOn(word));
             };
-            const std::uint64_t inner = within[w] & ~outside[w];
+            const std::uint64_t inner = ~notWithin[w] & ~outside[w];
             visit(active[w] & outside[w] & notAir[w], [&](openvdb::Index pos) { set(pos, 0); });
             visit(active[w] & inner & notMetal[w], [&](openvdb::Index pos) { set(pos, 1); });
             visit(active[w] & ~outside[w] & ~inner,

@@ -100,7 +100,7 @@ void forParts(const Mask& air, Visit visit) {
 }
 
 void readAir(const float* phi, LeafAir& leaf) {
-    leaf.air = voxelsWhere([phi](unsigned i) { return phi[i] > 0.f; });
+    leaf.air = voxelsAbove(phi, 0.f);
     forParts(leaf.air, [&](const Mask& part) {
         if (leaf.parts++ == 0)
             leaf.first = facesOf(part);

@@ -35,6 +35,8 @@ class SurfaceBinding {
     /// Index of the first active voxel of leaf n.
     std::size_t leafStart(std::size_t n) const { return leafStart_[n]; }
     const SurfacePoint& at(std::size_t index) const { return points_[index]; }
+    /// Those of leaf n's active voxels, one after the other.
+    const SurfacePoint* pointsOf(std::size_t n) const { return points_.data() + leafStart_[n]; }
 
     /// The closest point to any position (scene units); triangle -1 on the back.
     /// `radius` (scene units) is a guess at the distance that makes the search short; a wrong one costs time only.
