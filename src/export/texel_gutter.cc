@@ -3,6 +3,7 @@
 #include "surface/uv_frame.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
@@ -150,7 +151,7 @@ void addGutter(const SurfaceWalk& walk, int gutterTexels, TexelMap& map) {
             for (const auto& [texel, source] : front)
                 spread(texel, source);
     }
-    std::sort(map.gutter.begin(), map.gutter.end());
+    tbb::parallel_sort(map.gutter.begin(), map.gutter.end()); // each texel once: one order
 }
 
 } // namespace patina

@@ -3,10 +3,19 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace patina {
+
+namespace {
+
+// std::floor is a call where the processor's own is not taken for granted.
+double floorOf(double x) {
+    const double whole = static_cast<int>(x);
+    return whole > x ? whole - 1.0 : whole;
+}
+
+} // namespace
 
 NestSampler::NestSampler(const NestGrids& grids)
     : sides_(grids.sides), lattice_(leavesOf(std::as_const(grids.base->tree()))) {
@@ -38,7 +47,7 @@ NestSampler::NestSampler(const NestGrids& grids)
 
 NestCell NestSampler::locate(const Imath::V3d& point) const {
     NestCell cell;
-    double fx = std::floor(point.x), fy = std::floor(point.y), fz = std::floor(point.z);
+    double fx = floorOf(point.x), fy = floorOf(point.y), fz = floorOf(point.z);
     if (!sides_.empty()) {
         const openvdb::Coord &low = sides_.min(), &high = sides_.max();
         fx = std::clamp(fx, double(low.x()), double(high.x() - 1));
@@ -74,6 +83,14 @@ NestCell NestSampler::locate(const Imath::V3d& point) const {
 
 void NestSampler::corners(int k, const NestCell& cell, double* c) const {
     const auto& buffers = buffers_[k];
+    const int first = cell.voxel[0];
+    // Within one leaf the last corner lies one row further along each axis; elsewhere an index has wrapped.
+    if (cell.voxel[7] - first == 64 + 8 + 1 && cell.leaf[0] >= 0) {
+        const float* values = buffers[cell.leaf[0]] + first;
+        for (int n = 0; n < 8; ++n)
+            c[n] = values[((n & 4) ? 64 : 0) + ((n & 2) ? 8 : 0) + (n & 1)];
+        return;
+    }
     for (int n = 0; n < 8; ++n) {
         const std::int32_t leaf = cell.leaf[n];
         c[n] = leaf >= 0 ? buffers[leaf][cell.voxel[n]] : leaf == -1 ? background_[k] : -background_[k];
