@@ -16,7 +16,7 @@ InterfaceFoot::InterfaceFoot(const Workpiece& work)
       thinStack_(isThinStack(work.volume)) {}
 
 InterfaceFoot::Foot InterfaceFoot::find(int k, const openvdb::Coord& coord, std::size_t at) const {
-    const Imath::V3d x(coord.x(), coord.y(), coord.z());
+    const Imath::V3d x = sampler_.position(coord);
     Foot foot{x, binding_.at(at)};
     if (foot.under.triangle >= 0)
         foot.position = positionAt(binding_.surface(), foot.under) / voxelSize_;

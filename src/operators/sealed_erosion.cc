@@ -150,8 +150,7 @@ std::vector<float> sealedRise(const Workpiece& work, const OpenAir& air, double 
         if (!near.any)
             return;
         ClampedFactors clamped;
-        const openvdb::Coord& o = leaf.origin();
-        const Imath::V3d origin(o.x(), o.y(), o.z());
+        const Imath::V3d origin = sampler.position(leaf.origin());
         forActive(leaf, [&](openvdb::Index pos) {
             if (!(wanted[pos >> 6] >> (pos & 63) & 1) || near.point[pos] < 0)
                 return;

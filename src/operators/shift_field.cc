@@ -71,7 +71,7 @@ ShiftField makeShiftField(Workpiece& work, double thicknessUm, const ThicknessMa
                 continue;
             SurfacePoint under = binding.at(at);
             const openvdb::Coord c = voxel.getCoord();
-            Imath::V3d p(c.x(), c.y(), c.z());
+            Imath::V3d p = sampler.position(c);
             if (needFeet)
                 p += Imath::V3d(transform.toFoot[at]);
             else if (under.triangle >= 0)

@@ -28,7 +28,7 @@ void join(std::vector<int>& parent, int a, int b) {
 } // namespace
 
 SideGroups::SideGroups(const openvdb::FloatGrid& grid, double voxelSize)
-    : leaves_(leavesOf(grid.tree())), voxelSize_(voxelSize), groupOf_(leaves_.size() * 512, -1) {
+    : leaves_(leavesOf(grid.tree())), space_(grid.transform()), voxelSize_(voxelSize), groupOf_(leaves_.size() * 512, -1) {
     // A little more than a voxel, for the rounding of the distances.
     const float apart = static_cast<float>(1.01 * voxelSize);
     const auto joined = [&](const FloatLeaf& a, int i, const FloatLeaf& b, int j) {
@@ -91,7 +91,7 @@ SideGroups::SideGroups(const openvdb::FloatGrid& grid, double voxelSize)
 
 Imath::V3d SideGroups::placeOf(int voxel) const {
     const openvdb::Coord c = leaves_[voxel >> 9]->offsetToGlobalCoord(static_cast<openvdb::Index>(voxel & 511));
-    return Imath::V3d(c.x(), c.y(), c.z()) * voxelSize_;
+    return space_.position(c) * voxelSize_;
 }
 
 SideGroups::Side SideGroups::sideOf(const Group& group, const WindingNumber& winding) const {

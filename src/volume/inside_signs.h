@@ -38,6 +38,7 @@ class SideGroups {
     Side sideOf(const Group& group, const WindingNumber& winding) const;
 
     std::vector<const FloatLeaf*> leaves_;
+    IndexSpace space_;
     double voxelSize_;
     std::vector<int> groupOf_; ///< per leaf and voxel; -1 where inactive
     std::vector<Group> groups_;

@@ -65,20 +65,20 @@ SurfaceMesh interfaceMesh(const LayerVolume& volume, int layer) {
     std::vector<openvdb::Vec3s> points;
     std::vector<openvdb::Vec3I> triangles;
     std::vector<openvdb::Vec4I> quads;
-    openvdb::tools::volumeToMesh(*grids.nest()[layer], points, triangles, quads, 0.0, 0.0);
+    // In scene units from the origin of the nest: a region's transform moves its grids into the model's coordinates.
+    const double voxelSize = volume.scale().voxelSize;
+    openvdb::FloatGrid view(const_cast<openvdb::FloatGrid&>(*grids.nest()[layer]), openvdb::ShallowCopy());
+    view.setTransform(grids.space.transform(voxelSize));
+    openvdb::tools::volumeToMesh(view, points, triangles, quads, 0.0, 0.0);
     if (triangles.empty() && quads.empty())
         throw RunError("volume", "the interface crosses no voxel");
 
-    // In voxels of the lattice: a region's transform moves its grids into the model's coordinates.
-    const auto& transform = grids.base->transform();
-    const double voxelSize = volume.scale().voxelSize;
     SurfaceMesh mesh;
     mesh.positions.resize(points.size());
     mesh.normals.resize(points.size());
     const NestSampler sampler(grids);
     tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t i) {
-        const openvdb::Vec3d index = transform.worldToIndex(points[i]);
-        const Imath::V3d at(index.x(), index.y(), index.z());
+        const Imath::V3d at = Imath::V3d(points[i].x(), points[i].y(), points[i].z()) * (1.0 / voxelSize);
         mesh.positions[i] = Imath::V3f(at * voxelSize);
         mesh.normals[i] = normalOf(slopeAt(sampler, layer, at));
     });

@@ -54,7 +54,7 @@ bool ensureInteriorBand(LayerVolume& volume, SurfaceBinding& binding, double vox
             const SurfacePoint& under = binding.at(at);
             const float swept = *voxel;
             if (under.triangle >= 0) {
-                const Imath::V3d x = Imath::V3d(c.x(), c.y(), c.z()) * voxelSize;
+                const Imath::V3d x = grids.space.position(c) * voxelSize;
                 voxel.setValue(
                     std::copysign(static_cast<float>((positionAt(binding.surface(), under) - x).length()), swept));
             }

@@ -40,6 +40,7 @@ LayerVolume LayerVolume::clone() const {
         grids->material = grids_->material->deepCopy();
     for (const auto& [name, field] : grids_->fields)
         grids->fields[name] = field->deepCopy();
+    grids->space = grids_->space;
     grids->sides = grids_->sides;
     grids->interiorBand = grids_->interiorBand;
     grids->exteriorBand = grids_->exteriorBand;

@@ -2,6 +2,7 @@
 // The grids inside a LayerVolume, for sources of volume/, operators/ and export/ only: this header pulls OpenVDB in.
 
 #include "volume/grid_instances.h"
+#include "volume/index_space.h"
 #include "volume/layer_volume.h"
 
 #include <map>
@@ -21,7 +22,8 @@ struct NestGrids {
     std::vector<openvdb::FloatGrid::Ptr> interfaces;
     openvdb::Int32Grid::Ptr material;
     std::map<std::string, openvdb::FloatGrid::Ptr> fields;
-    /// Of a region: the voxels among which the band was made and where it is cut off; empty for a whole model. What lies
+    IndexSpace space; ///< of all the grids
+    /// Of a region: the voxels (indices) among which the band was made and where it is cut off; empty for a whole model. What lies
     /// beyond is no air: nothing is read there, and the band does not grow there.
     openvdb::CoordBBox sides;
     double interiorBand = 0.0; ///< voxels inside the base that hold true distances

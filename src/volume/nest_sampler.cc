@@ -18,7 +18,11 @@ double floorOf(double x) {
 } // namespace
 
 NestSampler::NestSampler(const NestGrids& grids)
-    : sides_(grids.sides), lattice_(leavesOf(std::as_const(grids.base->tree()))) {
+    : space_(grids.space),
+      sides_(grids.sides.empty() ? grids.sides
+                                 : openvdb::CoordBBox(grids.sides.min() - grids.space.origin(),
+                                                      grids.sides.max() - grids.space.origin())),
+      lattice_(leavesOf(std::as_const(grids.base->tree()))) {
     auto nest = grids.nest();
     interfaces_ = static_cast<int>(nest.size());
     if (grids.metal) {
@@ -54,7 +58,9 @@ NestCell NestSampler::locate(const Imath::V3d& point) const {
         fy = std::clamp(fy, double(low.y()), double(high.y() - 1));
         fz = std::clamp(fz, double(low.z()), double(high.z() - 1));
     }
-    const int i = static_cast<int>(fx), j = static_cast<int>(fy), k = static_cast<int>(fz);
+    const openvdb::Coord& origin = space_.origin();
+    const int i = static_cast<int>(fx) + origin.x(), j = static_cast<int>(fy) + origin.y(),
+              k = static_cast<int>(fz) + origin.z();
     cell.x = point.x - fx;
     cell.y = point.y - fy;
     cell.z = point.z - fz;

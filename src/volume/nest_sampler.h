@@ -12,7 +12,7 @@
 
 namespace patina {
 
-/// Eight corners of a lattice cell and where in it a point lies. Positions are in voxels (index space).
+/// Eight corners of a lattice cell and where in it a point lies. Positions are in voxels (volume/index_space.h).
 struct NestCell {
     std::array<std::int32_t, 8> leaf; ///< leaf index, or -1 outside, -2 inside the band's far sides
     std::array<std::int16_t, 8> voxel;
@@ -33,23 +33,28 @@ class NestSampler {
     /// up to two voxels.
     NestCell locate(const Imath::V3d& point) const;
 
+    /// Where a voxel stands, in voxels.
+    Imath::V3d position(const openvdb::Coord& index) const { return space_.position(index); }
+    const IndexSpace& space() const { return space_; }
+
     /// phi_k at the located point, scene units, in double; k = 0 is the floor.
     double value(int k, const NestCell& cell) const;
 
     /// phi_k and its gradient within the cell (scene units per voxel).
     double valueAndGradient(int k, const NestCell& cell, Imath::V3d& gradient) const;
 
-    /// phi_k at a lattice point.
-    float voxel(int k, const openvdb::Coord& coord) const;
+    /// phi_k at an index.
+    float voxel(int k, const openvdb::Coord& index) const;
 
-    /// Central difference of phi_k at a lattice point, scene units per voxel.
-    Imath::V3d centralGradient(int k, const openvdb::Coord& coord) const;
+    /// Central difference of phi_k at an index, scene units per voxel.
+    Imath::V3d centralGradient(int k, const openvdb::Coord& index) const;
 
   private:
     void corners(int k, const NestCell& cell, double* c) const;
 
     int interfaces_ = 0, reference_ = 0;
-    openvdb::CoordBBox sides_; ///< empty for a whole model
+    IndexSpace space_;
+    openvdb::CoordBBox sides_; ///< of places; empty for a whole model
     LeafLattice lattice_;      ///< -1 outside, -2 deep inside
     std::vector<std::vector<const float*>> buffers_; ///< [k][leaf]
     std::vector<float> background_;

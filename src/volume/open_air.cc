@@ -122,6 +122,7 @@ OpenAir::OpenAir(const LayerVolume& volume) {
 OpenAir::OpenAir(const LayerVolume& volume, const std::vector<float>& level) {
     NestGrids alone;
     alone.base = volume.grids().surface().deepCopy();
+    alone.space = volume.grids().space;
     alone.sides = volume.grids().sides;
     std::size_t at = 0;
     for (FloatLeaf* leaf : leavesOf(alone.base->tree()))
@@ -297,7 +298,7 @@ void OpenAir::find(const NestGrids& grids, int top, double voxelSize) {
                 const Imath::V3d gradient = sampler.centralGradient(top, c);
                 const double slope = gradient.length();
                 if (slope > 0.0) {
-                    const Imath::V3d x(c.x(), c.y(), c.z()), way = gradient / slope;
+                    const Imath::V3d x = grids.space.position(c), way = gradient / slope;
                     const double depth = -double(*voxel) / voxelSize;
                     for (double more = 0.25; more < 2.0; more += 0.5) {
                         const int around = airAround(x + way * (depth + more));

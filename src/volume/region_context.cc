@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "volume/grid_instances.h"
+#include "volume/index_space.h"
 #include "volume/vdb_file.h"
 
 #include <fmt/format.h>
@@ -51,16 +52,17 @@ int ContextFields::find(const std::string& name) const {
 
 double ContextFields::value(int field, const Imath::V3d& position) const {
     const openvdb::FloatGrid& grid = *grids_->fields[field];
-    const openvdb::Vec3d at = grid.worldToIndex(openvdb::Vec3d(position.x, position.y, position.z));
-    const openvdb::Coord corner(static_cast<int>(std::floor(at.x())), static_cast<int>(std::floor(at.y())),
-                                static_cast<int>(std::floor(at.z())));
+    const IndexSpace space(grid.transform());
+    const Imath::V3d at = position * (1.0 / grid.voxelSize()[0]);
+    const openvdb::Coord corner = space.index(static_cast<int>(std::floor(at.x)), static_cast<int>(std::floor(at.y)),
+                                              static_cast<int>(std::floor(at.z)));
     const openvdb::FloatTree& tree = grid.tree();
     float value = 0.f;
     double sum = 0.0, weights = 0.0;
     for (int c = 0; c < 8; ++c) {
         const openvdb::Coord voxel = corner.offsetBy(c & 1, (c >> 1) & 1, c >> 2);
-        const double weight = (1.0 - std::abs(at.x() - voxel.x())) * (1.0 - std::abs(at.y() - voxel.y())) *
-                              (1.0 - std::abs(at.z() - voxel.z()));
+        const Imath::V3d away = at - space.position(voxel);
+        const double weight = (1.0 - std::abs(away.x)) * (1.0 - std::abs(away.y)) * (1.0 - std::abs(away.z));
         if (weight > 0.0 && tree.probeValue(voxel, value)) {
             sum += weight * value;
             weights += weight;
@@ -73,7 +75,7 @@ double ContextFields::value(int field, const Imath::V3d& position) const {
         for (int j = -1; j <= 2; ++j)
             for (int k = -1; k <= 2; ++k) {
                 const openvdb::Coord voxel = corner.offsetBy(i, j, k);
-                const double away = (voxel.asVec3d() - at).lengthSqr();
+                const double away = (space.position(voxel) - at).length2();
                 if (away < nearest && tree.probeValue(voxel, value)) {
                     nearest = away;
                     found = value;

@@ -105,8 +105,8 @@ void spreadSigns(FloatLeaf& leaf, const openvdb::CoordBBox& sides, float outer, 
 // question per connected group settles them. Those that a side runs through are asked one by one: the band is cut off in
 // them, so they separate nothing, which would lead the library's flood fill astray as well.
 template <typename IsInside>
-void fillInside(openvdb::FloatGrid& grid, const openvdb::CoordBBox& sides, double voxelSize, float outer,
-                IsInside&& isInside) {
+void fillInside(openvdb::FloatGrid& grid, const IndexSpace& space, const openvdb::CoordBBox& sides, double voxelSize,
+                float outer, IsInside&& isInside) {
     const openvdb::Coord first = sides.min() >> 3, last = sides.max() >> 3;
     const V3i low(first.x(), first.y(), first.z()), size(V3i(last.x(), last.y(), last.z()) - low + V3i(1));
     const auto isCut = [&](const V3i& b) {
@@ -115,9 +115,11 @@ void fillInside(openvdb::FloatGrid& grid, const openvdb::CoordBBox& sides, doubl
         return !sides.isInside(openvdb::CoordBBox(corner, corner.offsetBy(7)));
     };
     const auto middleOf = [&](const V3i& b) {
-        V3d middle = V3d(b + low) * 8.0 + V3d(3.5);
+        const V3i o = (b + low) * 8;
+        V3d middle = space.position({o.x, o.y, o.z}) + V3d(3.5);
+        const V3d from = space.position(sides.min()), to = space.position(sides.max());
         for (int i = 0; i < 3; ++i)
-            middle[i] = std::clamp(middle[i], double(sides.min()[i]), double(sides.max()[i]));
+            middle[i] = std::clamp(middle[i], from[i], to[i]);
         return middle * voxelSize;
     };
     const auto indexOf = [&](const V3i& b) { return (std::size_t(b.x) * size.y + b.y) * size.z + b.z; };
@@ -219,13 +221,14 @@ LayerVolume voxelizeRegion(const ClosedSurface& piece, const Region& region, con
     auto grids = std::make_unique<NestGrids>();
     // The library finds the band; signs and distances are ours.
     grids->base = unsignedBand(piece, voxelSize, static_cast<float>(widest), progress);
+    grids->space = IndexSpace(grids->base->transform());
     progress.checkpoint();
     grids->interiorBand = options.interiorBand;
     grids->exteriorBand = options.exteriorBand;
 
     const RayScene scene(piece.positions, piece.triangles);
     const Imath::Box3i sides = region.voxelSides();
-    grids->sides = openvdb::CoordBBox(sides.min.x, sides.min.y, sides.min.z, sides.max.x, sides.max.y, sides.max.z);
+    grids->sides = grids->space.index(sides);
     const auto outer = static_cast<float>(options.exteriorBand * voxelSize);
     const auto inner = static_cast<float>(options.interiorBand * voxelSize);
     const auto leaves = leavesOf(grids->base->tree());
@@ -235,7 +238,7 @@ LayerVolume voxelizeRegion(const ClosedSurface& piece, const Region& region, con
             return;
         for (auto voxel = leaves[n]->beginValueOn(); voxel; ++voxel) {
             const openvdb::Coord c = voxel.getCoord();
-            const V3d x = V3d(c.x(), c.y(), c.z()) * voxelSize;
+            const V3d x = grids->space.position(c) * voxelSize;
             const auto closest = scene.closest(V3f(x), 1.05f * *voxel + static_cast<float>(voxelSize));
             if (!grids->sides.isInside(c) || !closest) {
                 voxel.setValueOff();
@@ -270,13 +273,11 @@ LayerVolume voxelizeRegion(const ClosedSurface& piece, const Region& region, con
     };
     tbb::parallel_for(std::size_t(0), kept.size(), [&](std::size_t n) {
         spreadSigns(*kept[n], grids->sides, outer, [&](const openvdb::Coord& c) {
-            return isInPiece(V3d(c.x(), c.y(), c.z()) * voxelSize);
+            return isInPiece(grids->space.position(c) * voxelSize);
         });
     });
-    fillInside(*grids->base, grids->sides, voxelSize, outer, isInPiece);
-    const auto place = openvdb::math::Transform::createLinearTransform(voxelSize);
-    const V3d origin = region.origin() * region.magnification;
-    place->postTranslate(openvdb::Vec3d(origin.x, origin.y, origin.z));
+    fillInside(*grids->base, grids->space, grids->sides, voxelSize, outer, isInPiece);
+    const auto place = grids->space.transform(voxelSize, region.origin() * region.magnification);
     grids->base->setTransform(place);
 
     auto tree = std::make_shared<openvdb::Int32Tree>(grids->base->tree(), 0, openvdb::TopologyCopy());

@@ -142,7 +142,7 @@ SectionSampler::Foot SectionSampler::typicalPlace() const {
             if (difference >= least)
                 continue;
             const openvdb::Coord c = voxel.getCoord();
-            if (const auto here = foot(Imath::V3d(c.x(), c.y(), c.z()) * nest_->voxelSize, 2.0)) {
+            if (const auto here = foot(grids.space.position(c) * nest_->voxelSize, 2.0)) {
                 best = here;
                 least = difference;
             }

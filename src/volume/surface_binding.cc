@@ -152,6 +152,7 @@ void SurfaceBinding::countVoxels(const LayerVolume& volume) {
 void SurfaceBinding::rebind(const LayerVolume& volume) {
     const auto leaves = leavesOf(std::as_const(volume.grids().base->tree()));
     const double voxelSize = volume.scale().voxelSize;
+    const IndexSpace& space = volume.grids().space;
     // Metal that only hidden faces are near to has no place in the band: refineBase() takes it out.
     const auto deepest = static_cast<float>((volume.grids().interiorBand + 0.6) * voxelSize);
     // A closest point is a function of the voxel's place alone (see RayScene::closest on ties): those of voxels that
@@ -192,7 +193,7 @@ void SurfaceBinding::rebind(const LayerVolume& volume) {
             const openvdb::Coord c = voxel.getCoord();
             // phi_0 is the distance to the model, or to a hidden face, or some thousandths too much.
             const auto radius = static_cast<float>(1.0005 * std::abs(*voxel) + 0.02 * voxelSize);
-            const Imath::V3d x = Imath::V3d(c.x(), c.y(), c.z()) * voxelSize;
+            const Imath::V3d x = space.position(c) * voxelSize;
             points_[at] = closest(x, radius, *voxel < 0.f ? deepest : std::numeric_limits<float>::infinity());
         }
     });
@@ -202,6 +203,7 @@ void SurfaceBinding::refineBase(LayerVolume& volume) {
     NestGrids& grids = volume.grids();
     const auto leaves = leavesOf(grids.base->tree());
     const double voxelSize = volume.scale().voxelSize;
+    const IndexSpace& space = grids.space;
     const double deepest = (grids.interiorBand + 0.5) * voxelSize;
     const float inside = -grids.base->background();
     std::vector<char> left(points_.size(), 0);
@@ -209,7 +211,7 @@ void SurfaceBinding::refineBase(LayerVolume& volume) {
         std::size_t at = leafStart_[n];
         for (auto voxel = leaves[n]->beginValueOn(); voxel; ++voxel, ++at) {
             const openvdb::Coord c = voxel.getCoord();
-            const Imath::V3d x = Imath::V3d(c.x(), c.y(), c.z()) * voxelSize;
+            const Imath::V3d x = space.position(c) * voxelSize;
             double distance;
             if (points_[at].triangle >= 0) {
                 distance = (positionAt(*surface_, points_[at]) - x).length();

@@ -262,9 +262,14 @@ LayerVolume readVolume(const std::filesystem::path& path) {
     from.modelHash = optionalText(*meta, "patina_model_hash");
     from.program = optionalText(*meta, "patina_version");
     from.region = optionalText(*meta, "patina_region");
+    // A volume keeps the space that it was made in; the transform of a region's grids leads into the model.
+    raw->space = IndexSpace(raw->base->transform());
     if (!from.region.empty()) {
-        const Imath::Box3i sides = Region::fromText(from.region, file).voxelSides();
-        raw->sides = openvdb::CoordBBox(sides.min.x, sides.min.y, sides.min.z, sides.max.x, sides.max.y, sides.max.z);
+        const Region region = Region::fromText(from.region, file);
+        const openvdb::Coord regionOrigin(region.originVoxels.x, region.originVoxels.y, region.originVoxels.z);
+        raw->space = IndexSpace(raw->space.origin() + regionOrigin);
+        const Imath::Box3i sides = region.voxelSides();
+        raw->sides = raw->space.index(sides);
     }
     try {
         from.seed = std::stoull(optionalText(*meta, "patina_seed"));

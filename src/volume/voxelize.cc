@@ -51,6 +51,7 @@ LayerVolume voxelize(const ClosedSurface& surface, const VoxelizeOptions& option
     auto grids = std::make_unique<NestGrids>();
     const WindingNumber winding(surface.positions, surface.triangles);
     grids->base = voxelizeByWinding(surface, winding, options, progress);
+    grids->space = IndexSpace(grids->base->transform());
     progress.checkpoint();
     grids->interiorBand = options.interiorBand;
     grids->exteriorBand = options.exteriorBand;

@@ -164,7 +164,7 @@ inline DisplacedDistance measureDisplaced(const LayerVolume& volume, const Surfa
     tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t i) {
         // The mesher puts its points inside the cells; onto the crossing along the gradient.
         const openvdb::Vec3d at = volume.grids().surface().worldToIndex(points[i]);
-        Imath::V3d point = Imath::V3d(at.x(), at.y(), at.z()) * voxel;
+        Imath::V3d point = (Imath::V3d(at.x(), at.y(), at.z()) + sampler.position(openvdb::Coord(0))) * voxel;
         for (int step = 0; step < 3; ++step) {
             Imath::V3d gradient;
             const double phi = sampler.valueAndGradient(last, sampler.locate(point / voxel), gradient);

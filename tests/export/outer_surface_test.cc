@@ -21,8 +21,8 @@ class OuterSurfaceTest : public testing::Test {
     }
     void hollow() {
         for (auto voxel = piece_->volume->grids().interfaces[0]->beginValueOn(); voxel; ++voxel) {
-            const auto at = voxel.getCoord();
-            const float inGap = std::min({float(at.x()) - 20.f, float(at.z()) - 1.f, 3.f - float(at.z())});
+            const Imath::V3i at = piece_->volume->grids().space.place(voxel.getCoord());
+            const float inGap = std::min({float(at.x) - 20.f, float(at.z) - 1.f, 3.f - float(at.z)});
             voxel.setValue(std::max(*voxel, inGap));
         }
     }

@@ -78,7 +78,7 @@ void expectTheHollowStays(const test::Piece& piece, const std::vector<Operation>
             ASSERT_EQ(now.getValue(coord), value) << operation.name << " at " << coord;
         // Outside, one voxel above the ball at the south pole, the surface moves.
         const auto was = piece.volume->grids().surface().getConstAccessor();
-        const openvdb::Coord south(0, 0, -13);
+        const openvdb::Coord south = volume.grids().space.index(0, 0, -13);
         EXPECT_EQ(now.getValue(south) != was.getValue(south), operation.actsOutside) << operation.name;
         for (std::size_t k = 1; k < volume.grids().nest().size(); ++k)
             for (auto voxel = volume.grids().nest()[k]->cbeginValueOn(); voxel; ++voxel)
@@ -136,7 +136,8 @@ TEST(ClosedAir, APoreThatIsOpenedIsNoLongerClosed) {
     coat(work, "late", 0.3, nullptr, piece->progress);
     // Now the bottom of the hollow is coated like the outside.
     const auto before = work.volume.grids().nest();
-    EXPECT_LT(before.back()->tree().getValue({0, 0, -5}), before[before.size() - 2]->tree().getValue({0, 0, -5}));
+    const openvdb::Coord bottom = work.volume.grids().space.index(0, 0, -5);
+    EXPECT_LT(before.back()->tree().getValue(bottom), before[before.size() - 2]->tree().getValue(bottom));
 }
 
 TEST(ClosedAir, ErosionComesThroughAWallFromOutsideOnly) {
@@ -150,7 +151,8 @@ TEST(ClosedAir, ErosionComesThroughAWallFromOutsideOnly) {
     int inside = 0;
     for (auto voxel = piece->volume->grids().base->cbeginValueOn(); voxel; ++voxel) {
         const auto c = voxel.getCoord();
-        const double r = std::sqrt(double(c.x()) * c.x() + double(c.y()) * c.y() + double(c.z()) * c.z());
+        const Imath::V3d x = piece->volume->grids().space.position(c);
+        const double r = x.length();
         if (r < 7.5) { // nearer to the hollow than to what is left of the outside, 9.5
             ASSERT_EQ(metal.getValue(c), base.getValue(c)) << c;
             ++inside;
@@ -180,18 +182,19 @@ TEST(ClosedAir, AnErosionThatOpensAPoreTakesNothingFromBehindThinMetal) {
     int kept = 0;
     for (auto voxel = before.grids().base->cbeginValueOn(); voxel; ++voxel) {
         const auto c = voxel.getCoord();
-        const double r = std::sqrt(double(c.x()) * c.x() + double(c.y()) * c.y() + double(c.z()) * c.z());
-        if (r < 12.0 && c.z() < 0) { // the hollow, away from the channel
+        const Imath::V3d x = piece->volume->grids().space.position(c);
+        const double r = x.length();
+        if (r < 12.0 && x.z < 0.0) { // the hollow, away from the channel
             ASSERT_EQ(is.getValue(c), was.getValue(c)) << c;
             ++kept;
         }
-        if (r > 14.0 && c.z() < 0) { // outside all is gone
+        if (r > 14.0 && x.z < 0.0) { // outside all is gone
             ASSERT_EQ(is.getValue(c), base.getValue(c)) << c;
         }
     }
     EXPECT_GT(kept, 1000);
     // Beside the channel's mouth in the hollow the front has come in.
-    EXPECT_GT(is.getValue({0, 0, 11}), 0.f);
+    EXPECT_GT(is.getValue(piece->volume->grids().space.index(0, 0, 11)), 0.f);
 }
 
 } // namespace

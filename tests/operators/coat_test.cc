@@ -119,7 +119,7 @@ TEST(Coat, TheBackOfASheetTakesNothing) {
     auto work = piece->work();
     coat(work, "soot", 0.5, nullptr, piece->progress);
     const NestGrids& grids = piece->volume->grids();
-    const openvdb::Coord front(15, 15, 0), back(15, 15, -8);
+    const openvdb::Coord front = grids.space.index(15, 15, 0), back = grids.space.index(15, 15, -8);
     EXPECT_NEAR(grids.base->tree().getValue(front) - grids.surface().tree().getValue(front), 0.5, 1e-4);
     EXPECT_EQ(grids.base->tree().getValue(back), grids.surface().tree().getValue(back));
 }

@@ -172,7 +172,7 @@ TEST(Fill, GrowsTheBandAndSparesTheBackOfASheet) {
     EXPECT_TRUE(fill(work, "dirt", 6.0, nullptr, piece->progress).grewBand);
     EXPECT_NEAR(test::Column(*piece->volume, flat).height(20.0, 20.0), 6.0, 0.05);
     const NestGrids& grids = piece->volume->grids();
-    const openvdb::Coord back(20, 20, -8);
+    const openvdb::Coord back = grids.space.index(20, 20, -8);
     EXPECT_EQ(grids.base->tree().getValue(back), grids.surface().tree().getValue(back));
 }
 

@@ -19,9 +19,9 @@ double crossingAlongZ(const LayerVolume& volume, const std::vector<float>& level
     std::size_t at = 0;
     for (const FloatLeaf* leaf : leavesOf(std::as_const(volume.grids().base->tree())))
         for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel, ++at) {
-            const openvdb::Coord c = voxel.getCoord();
-            if (c.x() == x && c.y() == y)
-                column[c.z()] = level[at];
+            const Imath::V3i c = volume.grids().space.place(voxel.getCoord());
+            if (c.x == x && c.y == y)
+                column[c.z] = level[at];
         }
     for (int z = fromZ; z < toZ; ++z)
         if (column.count(z) && column.count(z + 1) && column[z] <= 0.f && column[z + 1] > 0.f)

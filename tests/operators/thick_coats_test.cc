@@ -83,8 +83,7 @@ CoatErrors fourVoxels(std::unique_ptr<test::Piece> piece, const test::Distance& 
         for (auto voxel = surface.cbeginValueOn(); voxel; ++voxel) {
             if (std::abs(*voxel) > 0.6f)
                 continue;
-            const openvdb::Coord at = voxel.getCoord();
-            const Imath::V3d p = reader.ontoSurface(Imath::V3d(at.x(), at.y(), at.z()));
+            const Imath::V3d p = reader.ontoSurface(piece->volume->grids().space.position(voxel.getCoord()));
             if (!counts(p))
                 continue;
             sum += std::pow(base(p) - 4.0 - film, 2);

@@ -233,7 +233,8 @@ TEST_F(GrowthRun, patchesKeepOffWhereWetnessBlocksThem) {
     std::vector<std::pair<double, double>> places; // how wet, how much
     for (std::size_t i = 0; i < ball.positions.size(); ++i) {
         const Imath::V3f p = ball.positions[i];
-        const openvdb::Coord c(int(std::lround(p.x)), int(std::lround(p.y)), int(std::lround(p.z)));
+        const openvdb::Coord c = result.volume->grids().space.index(int(std::lround(p.x)), int(std::lround(p.y)),
+                                                                    int(std::lround(p.z)));
         places.emplace_back(wetness.getValue(c),
                             thicknessAt(*result.volume, Imath::V3d(p), Imath::V3d(p).normalized()));
     }
@@ -315,8 +316,9 @@ TEST_F(GrowthRun, aRegionGrowsInVoxelsAsTheWholeDoes) {
         std::size_t compared = 0, bits = 0, otherSide = 0;
         double worst = 0.0;
         for (auto voxel = cut.cbeginValueOn(); voxel; ++voxel) {
-            const openvdb::Coord c = voxel.getCoord().offsetBy(origin.x, origin.y, origin.z);
-            if (!box.intersects(Imath::V3d(c.x(), c.y(), c.z())) || !all.isValueOn(c))
+            const Imath::V3i there = part.volume->grids().space.place(voxel.getCoord()) + origin;
+            const openvdb::Coord c = whole.volume->grids().space.index(there);
+            if (!box.intersects(Imath::V3d(there)) || !all.isValueOn(c))
                 continue;
             const float a = *voxel, b = all.getValue(c);
             ++compared;

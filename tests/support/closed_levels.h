@@ -17,6 +17,7 @@ class ClosedLevels {
         LayerVolume closed = volume.clone();
         const Closing closing = closeInterface(closed, 0, options, progress);
         before_ = closed.grids().base;
+        space_ = closed.grids().space;
         after_ = before_->deepCopy();
         std::size_t at = 0;
         for (FloatLeaf* leaf : leavesOf(after_->tree()))
@@ -26,12 +27,13 @@ class ClosedLevels {
 
     /// By how much the closing lowers a voxel's level; nought where it keeps its bits.
     float filled(const Imath::V3i& voxel) const {
-        const openvdb::Coord x(voxel.x, voxel.y, voxel.z);
+        const openvdb::Coord x = space_.index(voxel);
         return before_->tree().getValue(x) - after_->tree().getValue(x);
     }
 
   private:
     openvdb::FloatGrid::Ptr before_, after_;
+    IndexSpace space_;
 };
 
 } // namespace patina::test

@@ -26,9 +26,9 @@ inline std::unique_ptr<Piece> hollowBall(float radius, float hollow, double chan
     if (channel > 0.0)
         for (FloatLeaf* leaf : leavesOf(piece->volume->grids().base->tree()))
             for (auto voxel = leaf->beginValueAll(); voxel; ++voxel) {
-                const auto c = voxel.getCoord();
-                if (c.z() > 0)
-                    voxel.setValue(std::max(*voxel, static_cast<float>(channel - std::hypot(c.x(), c.y()))));
+                const Imath::V3i c = piece->volume->grids().space.place(voxel.getCoord());
+                if (c.z > 0)
+                    voxel.setValue(std::max(*voxel, static_cast<float>(channel - std::hypot(c.x, c.y))));
             }
     return piece;
 }

@@ -11,15 +11,17 @@ namespace patina::test {
 
 class SmoothReader {
   public:
+    /// \param grid  of a whole model
     explicit SmoothReader(const openvdb::FloatGrid& grid, double voxelSize = 1.0)
-        : accessor_(grid.getConstAccessor()), inverse_(1.0 / voxelSize) {}
+        : accessor_(grid.getConstAccessor()), space_(grid.transform()), inverse_(1.0 / voxelSize) {}
 
     /// The value in voxels at a place in voxels.
     double at(const Imath::V3d& p) const {
-        const openvdb::Coord c(int(std::floor(p.x)), int(std::floor(p.y)), int(std::floor(p.z)));
+        const Imath::V3i low(int(std::floor(p.x)), int(std::floor(p.y)), int(std::floor(p.z)));
+        const openvdb::Coord c = space_.index(low);
         double w[3][4];
         for (int a = 0; a < 3; ++a) {
-            const double t = p[a] - c[a], t2 = t * t, t3 = t2 * t;
+            const double t = p[a] - low[a], t2 = t * t, t3 = t2 * t;
             w[a][0] = 0.5 * (-t3 + 2.0 * t2 - t);
             w[a][1] = 0.5 * (3.0 * t3 - 5.0 * t2 + 2.0);
             w[a][2] = 0.5 * (-3.0 * t3 + 4.0 * t2 + t);
@@ -73,6 +75,7 @@ class SmoothReader {
 
   private:
     openvdb::FloatGrid::ConstAccessor accessor_;
+    IndexSpace space_;
     double inverse_;
 };
 

@@ -81,9 +81,9 @@ TEST(AnyModel, ALargeCavityHasAMiddleOfAir) {
     addCube(mesh, 30.3f, V3f(0.f), true);
     const auto piece = pieceOf(mesh);
     EXPECT_EQ(metalVoxels(*piece), cubed(81) - cubed(61));
-    EXPECT_GT(piece->volume->grids().base->tree().getValue(openvdb::Coord(0)), 0.f);
-    EXPECT_LT(piece->volume->grids().base->tree().getValue(openvdb::Coord(35, 0, 0)), 0.f);
-    EXPECT_NEAR(piece->volume->grids().base->tree().getValue(openvdb::Coord(29, 0, 0)), 1.3, 1e-4);
+    EXPECT_GT(piece->volume->grids().base->tree().getValue(piece->volume->grids().space.index(0, 0, 0)), 0.f);
+    EXPECT_LT(piece->volume->grids().base->tree().getValue(piece->volume->grids().space.index(35, 0, 0)), 0.f);
+    EXPECT_NEAR(piece->volume->grids().base->tree().getValue(piece->volume->grids().space.index(29, 0, 0)), 1.3, 1e-4);
 }
 
 TEST(AnyModel, TwoCubesThatOverlapAreTheirUnion) {
@@ -94,11 +94,12 @@ TEST(AnyModel, TwoCubesThatOverlapAreTheirUnion) {
     EXPECT_EQ(metalVoxels(*piece), 2 * cubed(31) - 19 * 26 * 28);
     // The parts of faces that lie in the metal are no surface: in the overlap's middle nothing is near.
     const auto& tree = piece->volume->grids().base->tree();
-    EXPECT_LE(tree.getValue(openvdb::Coord(-3, 5, 3)), -4.f);
-    EXPECT_FALSE(tree.isValueOn(openvdb::Coord(-3, 5, 3)));
+    const IndexSpace& space = piece->volume->grids().space;
+    EXPECT_LE(tree.getValue(space.index(-3, 5, 3)), -4.f);
+    EXPECT_FALSE(tree.isValueOn(space.index(-3, 5, 3)));
     // Where the face leaves the metal, its distance is still exact: x = -3.3 is inside, x = 27.3 the far side.
-    EXPECT_NEAR(tree.getValue(openvdb::Coord(26, 5, 3)), -1.3, 1e-4);
-    EXPECT_NEAR(tree.getValue(openvdb::Coord(20, 20, 19)), -0.3, 1.01); // next to an edge of the second cube
+    EXPECT_NEAR(tree.getValue(space.index(26, 5, 3)), -1.3, 1e-4);
+    EXPECT_NEAR(tree.getValue(space.index(20, 20, 19)), -0.3, 1.01); // next to an edge of the second cube
 }
 
 TEST(AnyModel, InsideOutIsRepairedToTheSameMetal) {
@@ -127,9 +128,10 @@ TEST(AnyModel, AnOpenBoxIsASheetWithMetalBehindIt) {
     repairMesh(mesh, RepairMode::automatic);
     const auto piece = pieceOf(mesh);
     const auto& tree = piece->volume->grids().base->tree();
-    EXPECT_GT(tree.getValue(openvdb::Coord(0, 0, 0)), 0.f);    // hollow
-    EXPECT_LT(tree.getValue(openvdb::Coord(-18, 0, 0)), 0.f);  // wall
-    EXPECT_GT(tree.getValue(openvdb::Coord(-22, 0, 0)), 0.f);  // outside
+    const IndexSpace& space = piece->volume->grids().space;
+    EXPECT_GT(tree.getValue(space.index(0, 0, 0)), 0.f);    // hollow
+    EXPECT_LT(tree.getValue(space.index(-18, 0, 0)), 0.f);  // wall
+    EXPECT_GT(tree.getValue(space.index(-22, 0, 0)), 0.f);  // outside
 }
 
 TEST(AnyModel, AFinStandsOnItsCube) {
@@ -143,12 +145,13 @@ TEST(AnyModel, AFinStandsOnItsCube) {
     repairMesh(mesh, RepairMode::automatic);
     const auto piece = pieceOf(mesh);
     const auto& tree = piece->volume->grids().base->tree();
-    EXPECT_LT(tree.getValue(openvdb::Coord(0, 0, 0)), 0.f);
+    const IndexSpace& space = piece->volume->grids().space;
+    EXPECT_LT(tree.getValue(space.index(0, 0, 0)), 0.f);
     for (int x = -14; x <= 14; ++x)
         for (int y = -14; y <= 14; ++y)
-            EXPECT_LT(tree.getValue(openvdb::Coord(x, y, 0)), 0.f);
+            EXPECT_LT(tree.getValue(space.index(x, y, 0)), 0.f);
     // The fin has metal on one side and air on the other.
-    EXPECT_NE(tree.getValue(openvdb::Coord(0, 27, 13)) < 0.f, tree.getValue(openvdb::Coord(0, 27, 17)) < 0.f);
+    EXPECT_NE(tree.getValue(space.index(0, 27, 13)) < 0.f, tree.getValue(space.index(0, 27, 17)) < 0.f);
 }
 
 TEST(AnyModel, ASheetsBackStaysClearOfWhatLiesBehindIt) {
@@ -182,9 +185,10 @@ TEST(AnyModel, ASheetsBackStaysClearOfWhatLiesBehindIt) {
     // Between the two there is air.
     const auto piece = pieceOf(mesh);
     const auto& tree = piece->volume->grids().base->tree();
-    EXPECT_LT(tree.getValue(openvdb::Coord(0, 0, 19)), 0.f);
-    EXPECT_NEAR(tree.getValue(openvdb::Coord(0, 0, 17)), 0.8, 0.1);
-    EXPECT_LT(tree.getValue(openvdb::Coord(0, 0, 14)), 0.f);
+    const IndexSpace& space = piece->volume->grids().space;
+    EXPECT_LT(tree.getValue(space.index(0, 0, 19)), 0.f);
+    EXPECT_NEAR(tree.getValue(space.index(0, 0, 17)), 0.8, 0.1);
+    EXPECT_LT(tree.getValue(space.index(0, 0, 14)), 0.f);
     // Only the sheet has a back, and a wall of two triangles at each of its open edges.
     EXPECT_EQ(closed.triangles.size() - closed.frontTriangles, 200u + 2 * 40);
 }

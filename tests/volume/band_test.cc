@@ -20,7 +20,7 @@ TEST(Band, GrowsWithoutTouchingWhatIsThere) {
     EXPECT_TRUE(grids.base->tree().hasSameTopology(grids.interfaces[0]->tree()));
     EXPECT_TRUE(grids.base->tree().hasSameTopology(grids.material->tree()));
     // The new shell carries the distance outward.
-    EXPECT_NEAR(grids.base->tree().getValue(openvdb::Coord(28, 0, 0)), 8.0, 0.01);
+    EXPECT_NEAR(grids.base->tree().getValue(grids.space.index(28, 0, 0)), 8.0, 0.01);
 }
 
 TEST(Band, GrowsAboveTheSurfaceOnlyWhereItHasTo) {
@@ -29,15 +29,15 @@ TEST(Band, GrowsAboveTheSurfaceOnlyWhereItHasTo) {
     piece->volume->pushLayer("soot");
     for (FloatLeaf* leaf : leavesOf(piece->volume->grids().surface().tree()))
         for (auto voxel = leaf->beginValueOn(); voxel; ++voxel)
-            if (voxel.getCoord().z() > 15)
+            if (piece->volume->grids().space.place(voxel.getCoord()).z > 15)
                 voxel.setValue(*voxel - 2.f);
     const NestGrids& grids = piece->volume->grids();
     EXPECT_FALSE(ensureBandAbove(*piece->volume, 1.5));
     ASSERT_TRUE(ensureBandAbove(*piece->volume, 3.5));
-    EXPECT_TRUE(grids.base->tree().isValueOn(openvdb::Coord(0, 0, 25)));
-    EXPECT_FALSE(grids.base->tree().isValueOn(openvdb::Coord(0, 0, -25)));
-    EXPECT_NEAR(grids.base->tree().getValue(openvdb::Coord(0, 0, 25)), 5.0, 0.02);
-    EXPECT_NEAR(grids.surface().tree().getValue(openvdb::Coord(0, 0, 25)), 3.0, 0.05);
+    EXPECT_TRUE(grids.base->tree().isValueOn(grids.space.index(0, 0, 25)));
+    EXPECT_FALSE(grids.base->tree().isValueOn(grids.space.index(0, 0, -25)));
+    EXPECT_NEAR(grids.base->tree().getValue(grids.space.index(0, 0, 25)), 5.0, 0.02);
+    EXPECT_NEAR(grids.surface().tree().getValue(grids.space.index(0, 0, 25)), 3.0, 0.05);
     EXPECT_TRUE(grids.base->tree().hasSameTopology(grids.interfaces[0]->tree()));
     EXPECT_TRUE(grids.base->tree().hasSameTopology(grids.material->tree()));
 }

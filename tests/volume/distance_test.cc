@@ -22,7 +22,7 @@ Error errorOf(const LayerVolume& volume, const test::Distance& truth) {
     for (const FloatLeaf* leaf : leavesOf(std::as_const(volume.grids().base->tree())))
         for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel, ++at) {
             const openvdb::Coord c = voxel.getCoord();
-            const double e = field.distance[at] - truth({double(c.x()), double(c.y()), double(c.z())});
+            const double e = field.distance[at] - truth(volume.grids().space.position(c));
             sum += e * e;
             if (field.distance[at] > 1.f) {
                 outside += e * e;
@@ -66,7 +66,7 @@ TEST(Distance, FeetLieOnTheSurface) {
     for (const FloatLeaf* leaf : leavesOf(std::as_const(volume.grids().base->tree())))
         for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel, ++at) {
             const openvdb::Coord c = voxel.getCoord();
-            ASSERT_NEAR(truth(Imath::V3d(c.x(), c.y(), c.z()) + Imath::V3d(field.toFoot[at])), 0.0, 0.005);
+            ASSERT_NEAR(truth(volume.grids().space.position(c) + Imath::V3d(field.toFoot[at])), 0.0, 0.005);
         }
 }
 

@@ -60,7 +60,7 @@ TEST_F(FogFileTest, FogIsWhatShadersExpect) {
         EXPECT_GT(*value, 0.f);
         EXPECT_LE(*value, 1.f);
     }
-    EXPECT_EQ(grid->tree().getValue({0, 0, 0}), 0.f);
+    EXPECT_EQ(grid->tree().getValue(piece_->volume->grids().space.index(0, 0, 0)), 0.f);
     EXPECT_LT(grid->activeVoxelCount(), piece_->volume->activeVoxels());
 }
 
@@ -89,13 +89,14 @@ TEST_F(FogFileTest, OnlyFieldsBecomeHalf) {
     options.halfFields = true;
     writeVolume(*piece_->volume, folder_ / "half.vdb", options);
     const LayerVolume single = readVolume(folder_ / "single.vdb"), half = readVolume(folder_ / "half.vdb");
-    const openvdb::Coord at(15, 0, 0);
+    const IndexSpace& space = piece_->volume->grids().space;
+    const openvdb::Coord at = space.index(15, 0, 0);
     EXPECT_EQ(single.grids().fields.at("exposure")->tree().getValue(at), 0.123456789f);
     EXPECT_NE(half.grids().fields.at("exposure")->tree().getValue(at), 0.123456789f);
     EXPECT_NEAR(half.grids().fields.at("exposure")->tree().getValue(at), 0.123456789f, 1e-4);
     for (int i = 10; i < 20; ++i)
-        EXPECT_EQ(half.grids().surface().tree().getValue({i, 0, 0}),
-                  single.grids().surface().tree().getValue({i, 0, 0}));
+        EXPECT_EQ(half.grids().surface().tree().getValue(space.index(i, 0, 0)),
+                  single.grids().surface().tree().getValue(space.index(i, 0, 0)));
 }
 
 // Programs tell inside from outside of a level set by the sign of what lies beyond its band.
@@ -106,8 +107,8 @@ TEST_F(FogFileTest, LevelSetsAreNegativeInsidePositiveOutsideAndHaveTheirClass) 
         EXPECT_EQ(grid->getGridClass(), openvdb::GRID_LEVEL_SET) << name;
         EXPECT_GT(grid->background(), 0.f) << name;
         // The band reaches less far in than out.
-        EXPECT_EQ(grid->tree().getValue({0, 0, 0}), static_cast<float>(-piece_->volume->grids().interiorBand)) << name;
-        EXPECT_EQ(grid->tree().getValue({200, 0, 0}), grid->background()) << name;
+        EXPECT_EQ(grid->tree().getValue(piece_->volume->grids().space.index(0, 0, 0)), static_cast<float>(-piece_->volume->grids().interiorBand)) << name;
+        EXPECT_EQ(grid->tree().getValue(piece_->volume->grids().space.index(200, 0, 0)), grid->background()) << name;
     }
 }
 

@@ -9,7 +9,7 @@ namespace patina {
 namespace {
 
 int idAt(const LayerVolume& volume, int x, int y, int z) {
-    return volume.grids().material->tree().getValue(openvdb::Coord(x, y, z));
+    return volume.grids().material->tree().getValue(volume.grids().space.index(x, y, z));
 }
 
 // A sheet at z = 0 with a layer up to z = t (voxels = µm).

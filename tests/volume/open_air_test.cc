@@ -27,15 +27,15 @@ TEST(OpenAir, AHollowIsClosedAndSoIsItsWall) {
     for (const float hollow : {3.f, 16.f}) { // all in the band, and with a middle that is not
         const auto piece = hollowBall(hollow);
         const auto& tree = piece->volume->grids().base->tree();
-        ASSERT_GT(tree.getValue(openvdb::Coord(0, 0, 0)), 0.f);
+        ASSERT_GT(tree.getValue(piece->volume->grids().space.index(0, 0, 0)), 0.f);
         const OpenAir air(*piece->volume);
         ASSERT_TRUE(air.anyClosed());
         EXPECT_EQ(air.closedPores(), 1u);
         const auto leaves = leavesOf(std::as_const(tree));
         for (std::size_t n = 0; n < leaves.size(); ++n)
             for (auto voxel = leaves[n]->cbeginValueOn(); voxel; ++voxel) {
-                const auto c = voxel.getCoord();
-                const double r = std::sqrt(double(c.x()) * c.x() + double(c.y()) * c.y() + double(c.z()) * c.z());
+                const Imath::V3d c = piece->volume->grids().space.position(voxel.getCoord());
+                const double r = c.length();
                 EXPECT_EQ(air.isSealed(n, voxel.pos()), r < 0.5 * (30 + hollow)) << c;
             }
     }
@@ -78,9 +78,9 @@ TEST(OpenAir, OfARegionIsOpenWhereItTouchesASideOfTheBox) {
     const auto piece = hollowBall(8.f);
     ASSERT_TRUE(OpenAir(*piece->volume).anyClosed());
     NestGrids& grids = piece->volume->grids();
-    grids.sides = openvdb::CoordBBox(openvdb::Coord(-40, -40, -40), openvdb::Coord(40, 40, 5));
+    grids.sides = grids.space.index(Imath::Box3i(Imath::V3i(-40), Imath::V3i(40, 40, 5)));
     EXPECT_FALSE(OpenAir(*piece->volume).anyClosed());
-    grids.sides = openvdb::CoordBBox(openvdb::Coord(-40, -40, -40), openvdb::Coord(40, 40, 15));
+    grids.sides = grids.space.index(Imath::Box3i(Imath::V3i(-40), Imath::V3i(40, 40, 15)));
     EXPECT_TRUE(OpenAir(*piece->volume).anyClosed());
 }
 

@@ -229,7 +229,7 @@ TEST(RegionVolume, HasTheSignsAndDistancesOfTheWholeAndNoWallsAtItsSides) {
                 }
                 if (std::abs(distance) < 1e-3 * region.voxelSize)
                     continue;
-                const float phi = sampler.voxel(0, {i, j, k});
+                const float phi = sampler.voxel(0, sampler.space().index(i, j, k));
                 ASSERT_EQ(phi < 0.f, distance < 0.0) << i << " " << j << " " << k;
                 (distance < 0.0 ? inside : outside) += 1;
                 if (distance > -3.0 * region.voxelSize && distance < 0.0) {
@@ -245,7 +245,7 @@ TEST(RegionVolume, CarriesTheModelsCoordinatesInItsTransform) {
     CloseUp closeUp(meshOf(test::sphere(float(radius), 5)), cubeAround({0.0, 0.0, radius}, 0.0005), 32);
     const Region& region = closeUp.model.region();
     const auto& base = *closeUp.volume.grids().base;
-    const openvdb::Vec3d world = base.indexToWorld(openvdb::Vec3d(3, -5, 7));
+    const openvdb::Vec3d world = base.indexToWorld(closeUp.volume.grids().space.index(3, -5, 7));
     const V3d model = region.toModel(V3d(3, -5, 7) * region.localVoxelSize());
     EXPECT_NEAR(world.x() / region.magnification, model.x, 1e-12);
     EXPECT_NEAR(world.y() / region.magnification, model.y, 1e-12);

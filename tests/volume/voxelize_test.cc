@@ -15,9 +15,7 @@ TEST(Voxelize, ASphereIsItsDistance) {
     double worst = 0.0;
     for (const FloatLeaf* leaf : leavesOf(std::as_const(piece->volume->grids().base->tree())))
         for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel) {
-            const auto c = voxel.getCoord();
-            const double truth =
-                std::sqrt(double(c.x()) * c.x() + double(c.y()) * c.y() + double(c.z()) * c.z()) - 30.0;
+            const double truth = piece->volume->grids().space.position(voxel.getCoord()).length() - 30.0;
             worst = std::max(worst, std::abs(*voxel - truth));
         }
     // Edges of the geodesic sphere are 1.2 voxels long; its faces lie up to e²/(6R) = 0.008 below the sphere.
@@ -32,17 +30,19 @@ TEST(Voxelize, TheLatticeIsAnchoredAtTheOrigin) {
         p += Imath::V3f(5.f, 0.f, 0.f);
     const auto piece = test::makePiece(std::move(surface), scale);
     const auto& grid = *piece->volume->grids().base;
-    EXPECT_LT(grid.tree().getValue(openvdb::Coord(500, 0, 0)), 0.f);
-    EXPECT_NEAR(grid.transform().indexToWorld(openvdb::Coord(500, 0, 0)).x(), 5.0, 1e-9);
+    const openvdb::Coord middle = piece->volume->grids().space.index(500, 0, 0);
+    EXPECT_LT(grid.tree().getValue(middle), 0.f);
+    EXPECT_NEAR(grid.transform().indexToWorld(middle).x(), 5.0, 1e-9);
 }
 
 TEST(Voxelize, AnOpenSheetGetsABack) {
     const auto piece = test::makePiece(test::sheet(20.f, 10), test::voxelScale());
     const auto& tree = piece->volume->grids().base->tree();
-    EXPECT_LT(tree.getValue(openvdb::Coord(10, 10, -2)), 0.f);
-    EXPECT_GT(tree.getValue(openvdb::Coord(10, 10, 2)), 0.f);
-    EXPECT_GT(tree.getValue(openvdb::Coord(10, 10, -10)), 0.f);
-    EXPECT_NEAR(tree.getValue(openvdb::Coord(10, 10, 2)), 2.0, 1e-5);
+    const IndexSpace& space = piece->volume->grids().space;
+    EXPECT_LT(tree.getValue(space.index(10, 10, -2)), 0.f);
+    EXPECT_GT(tree.getValue(space.index(10, 10, 2)), 0.f);
+    EXPECT_GT(tree.getValue(space.index(10, 10, -10)), 0.f);
+    EXPECT_NEAR(tree.getValue(space.index(10, 10, 2)), 2.0, 1e-5);
 }
 
 TEST(Voxelize, AModelThatNoVoxelSeesIsAnErrorOfTheModel) {

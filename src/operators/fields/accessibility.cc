@@ -40,7 +40,8 @@ std::vector<float> accessibleRadii(const LayerVolume& volume, const SurfaceVoxel
     const DistanceTransform transform(*volume.grids().nest()[layer], volume.scale().voxelSize);
     const SurfaceSeeds& seeds = transform.seeds();
     const SurfaceContacts contacts(transform.levelSet(), seeds, volume.scale().voxelSize);
-    const TangentSpheres spheres(contacts);
+    const IndexSpace& space = volume.grids().space;
+    const TangentSpheres spheres(contacts, space);
     std::vector<float> radii(surface.size(), limit);
     std::unique_ptr<Passages> passages;
     if (global)
@@ -52,10 +53,12 @@ std::vector<float> accessibleRadii(const LayerVolume& volume, const SurfaceVoxel
         if (begin == end || progress.cancelled())
             return;
         // The point under each voxel as the closing has it: on the patch of the nearest seed.
-        const V3i first = surface.voxels[begin];
-        const openvdb::Coord block(first.x >> 3, first.y >> 3, first.z >> 3);
-        const V3f origin(8.f * float(block.x()), 8.f * float(block.y()), 8.f * float(block.z()));
-        const auto numberOf = [](const V3i& v) { return 64 * (v.x & 7) + 8 * (v.y & 7) + (v.z & 7); };
+        const openvdb::Coord block = space.index(surface.voxels[begin]) >> 3;
+        const V3f origin(space.position(block << 3));
+        const auto numberOf = [&](const V3i& place) {
+            const openvdb::Coord v = space.index(place);
+            return 64 * (v.x() & 7) + 8 * (v.y() & 7) + (v.z() & 7);
+        };
         std::uint64_t wanted[8] = {};
         for (std::size_t i = begin; i < end; ++i)
             wanted[numberOf(surface.voxels[i]) >> 6] |= std::uint64_t(1) << (numberOf(surface.voxels[i]) & 63);

@@ -21,10 +21,10 @@ namespace {
 constexpr float unknown = -1.f; // fields are never negative
 
 // The mean of the known among eight corners, by their trilinear weights; unknown where there are none.
-float knownAround(const openvdb::FloatGrid::ConstAccessor& accessor, const V3d& p) {
-    const openvdb::Coord low(static_cast<int>(std::floor(p.x)), static_cast<int>(std::floor(p.y)),
-                             static_cast<int>(std::floor(p.z)));
-    const V3d f(p.x - low.x(), p.y - low.y(), p.z - low.z());
+float knownAround(const openvdb::FloatGrid::ConstAccessor& accessor, const IndexSpace& space, const V3d& p) {
+    const openvdb::Coord low = space.index(static_cast<int>(std::floor(p.x)), static_cast<int>(std::floor(p.y)),
+                                           static_cast<int>(std::floor(p.z)));
+    const V3d f = p - space.position(low);
     double sum = 0.0, weights = 0.0;
     for (int c = 0; c < 8; ++c) {
         const int i = c >> 2, j = (c >> 1) & 1, k = c & 1;
@@ -84,8 +84,9 @@ void fillRings(openvdb::FloatGrid& grid, std::vector<Place> left) {
 
 class FieldMap : public ThicknessMap {
   public:
-    FieldMap(const openvdb::FloatGrid& grid, double voxelSize) : voxelSize_(voxelSize) {
+    FieldMap(const openvdb::FloatGrid& grid, const IndexSpace& space, double voxelSize) : voxelSize_(voxelSize) {
         grids_.base = grid.deepCopy();
+        grids_.space = space;
         sampler_ = std::make_unique<NestSampler>(grids_);
     }
     double value(const MapPoint& point) const override {
@@ -109,7 +110,7 @@ void storeField(LayerVolume& volume, const std::string& name, int layer, const S
         auto accessor = seeds->getAccessor();
         for (std::size_t i = 0; i < surface.size(); ++i) {
             const Imath::V3i& v = surface.voxels[i];
-            accessor.setValueOnly({v.x, v.y, v.z}, std::max(0.f, values[i]));
+            accessor.setValueOnly(grids.space.index(v), std::max(0.f, values[i]));
         }
     }
     auto field = seeds->deepCopy();
@@ -124,14 +125,14 @@ void storeField(LayerVolume& volume, const std::string& name, int layer, const S
                 if (*voxel >= 0.f)
                     continue;
                 const openvdb::Coord c = voxel.getCoord();
-                V3d foot(c.x(), c.y(), c.z());
+                V3d foot = grids.space.position(c);
                 for (int step = 0; step < 2; ++step) { // the second mends what a bent field makes of the first
                     V3d gradient;
                     const double phi = sampler.valueAndGradient(layer, sampler.locate(foot), gradient);
                     if (gradient.length2() > 0.04 * voxelSize * voxelSize)
                         foot -= gradient * (phi / gradient.length2());
                 }
-                const float value = knownAround(accessor, foot);
+                const float value = knownAround(accessor, grids.space, foot);
                 voxel.setValue(value);
                 if (value < 0.f)
                     left[n].push_back({c, unknown});
@@ -148,7 +149,7 @@ ThicknessMapPtr makeFieldMap(const LayerVolume& volume, const std::string& name)
     const auto found = volume.grids().fields.find(name);
     if (found == volume.grids().fields.end())
         throw RunError(name, fmt::format("the volume has no field '{}'", name));
-    return std::make_shared<FieldMap>(*found->second, volume.scale().voxelSize);
+    return std::make_shared<FieldMap>(*found->second, volume.grids().space, volume.scale().voxelSize);
 }
 
 } // namespace patina

@@ -47,7 +47,7 @@ Passages::Passages(const LayerVolume& volume, int layer, const SurfaceVoxels& su
     tbb::parallel_for(0, size_.x, [&](int i) {
         for (int j = 0; j < size_.y; ++j)
             for (int k = 0; k < size_.z; ++k) {
-                const openvdb::Coord c((i + low_.x) * pitch_, (j + low_.y) * pitch_, (k + low_.z) * pitch_);
+                const openvdb::Coord c = sampler.space().index((V3i(i, j, k) + low_) * pitch_);
                 float& d = distance_[at(i, j, k)];
                 d = sampler.voxel(layer, c) <= 0.f ? -1.f : std::min(d, limit_);
             }

@@ -49,11 +49,11 @@ SurfaceVoxels findSurfaceVoxels(const LayerVolume& volume, int layer) {
             Imath::V3d offset;
             if (!nearestCrossing(sampler, layer, c, *voxel, offset))
                 continue;
-            const Imath::V3d x(c.x(), c.y(), c.z());
+            const Imath::V3d x = grids.space.position(c);
             Imath::V3d foot = x;
             if (!levelSetFoot(sampler, layer, voxelSize, x, foot) || (foot - x).length() > 1.2)
                 foot = x + offset;
-            here.voxels.emplace_back(c.x(), c.y(), c.z());
+            here.voxels.push_back(grids.space.place(c));
             here.feet.emplace_back(foot);
             here.normals.emplace_back(levelSetNormal(sampler, layer, foot));
         }

@@ -12,8 +12,8 @@ namespace patina {
 /// One entry per surface voxel: of every lattice edge that phi_n crosses, the end that is nearer to it. In the order of
 /// the band's leaves and voxels.
 struct SurfaceVoxels {
-    std::vector<Imath::V3i> voxels;
-    std::vector<Imath::V3f> feet;       ///< closest point of the surface, in voxels (index space)
+    std::vector<Imath::V3i> voxels;     ///< their places (volume/index_space.h)
+    std::vector<Imath::V3f> feet;       ///< closest point of the surface, in voxels
     std::vector<Imath::V3f> normals;    ///< outward, unit: the level set's gradient there
     std::vector<std::size_t> leafStart; ///< first entry of each leaf of the band, and the end
 

@@ -1,5 +1,6 @@
 #include "operators/fields/tangent_spheres.h"
 
+#include "volume/index_space.h"
 #include "volume/patch_contact.h"
 
 #include <algorithm>
@@ -105,7 +106,7 @@ struct TangentSpheres::Blocks {
     std::vector<std::int32_t> table; ///< cluster at a place, or -1
 
     std::int32_t clusterAt(int i, int j, int k) const { return table[(std::size_t(i) * size.y + j) * size.z + k]; }
-    void build(const SurfaceContacts& from);
+    void build(const SurfaceContacts& from, const IndexSpace& space);
 
     template <typename Visit>
     void clustersWithin(const V3f& low, const V3f& high, Visit&& visit) const {
@@ -118,15 +119,15 @@ struct TangentSpheres::Blocks {
     }
 };
 
-void TangentSpheres::Blocks::build(const SurfaceContacts& all) {
+void TangentSpheres::Blocks::build(const SurfaceContacts& all, const IndexSpace& space) {
     contacts = &all;
     const SurfaceSeeds& from = all.seeds();
     points.reserve(from.points.size());
     for (const PointBlocks::Block& block : from.points.blocks) {
-        const openvdb::Coord origin = block.block << 3;
+        const V3i origin = space.place(block.block << 3);
         for (std::uint32_t s = block.begin; s < block.end; ++s)
-            points.emplace_back(float(origin.x()) + from.points.x[s], float(origin.y()) + from.points.y[s],
-                                float(origin.z()) + from.points.z[s]);
+            points.emplace_back(float(origin.x) + from.points.x[s], float(origin.y) + from.points.y[s],
+                                float(origin.z) + from.points.z[s]);
     }
     if (points.empty())
         return;
@@ -185,9 +186,9 @@ void TangentSpheres::Blocks::build(const SurfaceContacts& all) {
     }
 }
 
-TangentSpheres::TangentSpheres(const SurfaceContacts& contacts) {
+TangentSpheres::TangentSpheres(const SurfaceContacts& contacts, const IndexSpace& space) {
     auto blocks = std::make_unique<Blocks>();
-    blocks->build(contacts);
+    blocks->build(contacts, space);
     blocks_ = std::move(blocks);
 }
 

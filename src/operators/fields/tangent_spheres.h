@@ -7,6 +7,7 @@
 
 namespace patina {
 
+class IndexSpace;
 class SurfaceContacts;
 
 /// A sphere of radius r that touches p along the unit normal n holds a point q, with d = q - p, where r > d² / 2 n·d.
@@ -23,7 +24,8 @@ class SurfaceContacts;
 class TangentSpheres {
   public:
     /// \param contacts  must outlive this
-    explicit TangentSpheres(const SurfaceContacts& contacts);
+    /// \param space  of the grid that they are of
+    TangentSpheres(const SurfaceContacts& contacts, const IndexSpace& space);
     ~TangentSpheres();
     TangentSpheres(TangentSpheres&&) noexcept;
 

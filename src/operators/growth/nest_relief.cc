@@ -42,9 +42,9 @@ struct NestShadow::Nest {
 
 NestShadow::NestShadow(const LayerVolume& volume) {
     const openvdb::CoordBBox box = volume.grids().base->evalActiveVoxelBoundingBox();
-    const auto corner = [](const openvdb::Coord& c) { return Imath::V3d(c.x(), c.y(), c.z()); };
+    const IndexSpace& space = volume.grids().space;
     nest_.reset(new Nest{NestSampler(volume.grids()), volume.scale().voxelSize,
-                         Imath::Box3d(corner(box.min()), corner(box.max()))});
+                         Imath::Box3d(space.position(box.min()), space.position(box.max()))});
 }
 
 NestShadow::~NestShadow() = default;

@@ -74,7 +74,7 @@ std::vector<double> filledByHeight(const LayerVolume& volume, const std::string&
         std::size_t count = 0;
         for (int x = from; x < to; ++x)
             for (int y = from; y < to; ++y)
-                count += ids.getValue(openvdb::Coord(x, y, z)) == id;
+                count += ids.getValue(volume.grids().space.index(x, y, z)) == id;
         filled.push_back(double(count) / (double(to - from) * (to - from)));
     }
     return filled;
@@ -293,7 +293,7 @@ std::vector<int> solidByColumn(const LayerVolume& volume, int from, int to) {
         for (int y = from; y < to; ++y) {
             solid.push_back(0);
             for (int z = 1; z < 100; ++z)
-                solid.back() += ids.getValue(openvdb::Coord(x, y, z)) == id;
+                solid.back() += ids.getValue(volume.grids().space.index(x, y, z)) == id;
         }
     return solid;
 }
