@@ -1,6 +1,7 @@
 #include "script/budget.h"
 
 #include "script/interpreter.h"
+#include "volume/index_origin.h"
 #include "volume/voxelize.h"
 
 #include <Imath/ImathBox.h>
@@ -141,11 +142,15 @@ BandNodes bandNodes(const SurfaceMesh& surface, double voxelSize, double inside,
         box.extendBy(p);
     if (box.isEmpty())
         return {};
-    const auto blockOf = [voxelSize](const Imath::V3d& p) {
-        return Imath::V3i(int(std::floor(p.x / voxelSize + 0.5)) >> 3, int(std::floor(p.y / voxelSize + 0.5)) >> 3,
-                          int(std::floor(p.z / voxelSize + 0.5)) >> 3);
-    };
     const double behind = surface.closed ? inside : sheetBackVoxels + outside;
+    const Imath::V3d reach(std::max(behind, outside));
+    const Imath::V3i origin =
+        indexOriginFor({Imath::V3d(box.min) / voxelSize - reach, Imath::V3d(box.max) / voxelSize + reach});
+    const auto blockOf = [voxelSize, origin](const Imath::V3d& p) {
+        return Imath::V3i((int(std::floor(p.x / voxelSize + 0.5)) + origin.x) >> 3,
+                          (int(std::floor(p.y / voxelSize + 0.5)) + origin.y) >> 3,
+                          (int(std::floor(p.z / voxelSize + 0.5)) + origin.z) >> 3);
+    };
     const Imath::V3d margin((std::max(behind, outside) + 8.0) * voxelSize);
     const Imath::V3d blocks = (Imath::V3d(box.size()) + margin * 2.0) / (8.0 * voxelSize);
     constexpr double mostMarks = 2147483648.0; // bits: 256 MiB, a cube of 10,000 voxels

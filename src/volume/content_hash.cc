@@ -4,19 +4,25 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <vector>
+
 namespace patina {
 
 namespace {
 
-// Leaves are hashed in parallel and their digests hashed in tree order, so the result does not depend on the threads.
+// Leaves are hashed in parallel and their digests hashed in one order, so the result does not depend on the threads.
+// By their places, so that it plays no part where in index space the volume lies.
 template <typename Tree>
-void addTree(ContentHash& hash, const Tree& tree) {
-    const auto leaves = leavesOf(tree);
+void addTree(ContentHash& hash, const Tree& tree, const IndexSpace& space) {
+    auto leaves = leavesOf(tree);
+    std::sort(leaves.begin(), leaves.end(), [](const auto* a, const auto* b) { return a->origin() < b->origin(); });
     std::vector<std::uint64_t> digests(leaves.size());
     tbb::parallel_for(std::size_t(0), leaves.size(), [&](std::size_t i) {
         ContentHash leafHash;
         const auto& leaf = *leaves[i];
-        leafHash.add(leaf.origin().data(), 3 * sizeof(std::int32_t));
+        const Imath::V3i place = space.place(leaf.origin());
+        leafHash.add(&place, sizeof place);
         for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) {
             const auto offset = voxel.pos();
             const auto value = *voxel;
@@ -37,18 +43,18 @@ std::string contentHash(const LayerVolume& volume) {
         hash.add(name);
     for (const std::string& name : volume.layers())
         hash.add(name);
-    addTree(hash, grids.base->tree());
+    addTree(hash, grids.base->tree(), grids.space);
     if (grids.metal) {
         hash.add("metal");
-        addTree(hash, grids.metal->tree());
+        addTree(hash, grids.metal->tree(), grids.space);
     }
     for (const auto& interface : grids.interfaces)
-        addTree(hash, interface->tree());
+        addTree(hash, interface->tree(), grids.space);
     if (grids.material)
-        addTree(hash, grids.material->tree());
+        addTree(hash, grids.material->tree(), grids.space);
     for (const auto& [name, field] : grids.fields) {
         hash.add(name);
-        addTree(hash, field->tree());
+        addTree(hash, field->tree(), grids.space);
     }
     return hash.text();
 }

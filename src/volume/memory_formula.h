@@ -10,8 +10,8 @@ namespace patina {
 double leafValueBytes(const LayerVolume& volume);
 
 /// Bytes of those grids over leafValueBytes(): 1.05 for the leaves' masks and what stands above them in a large volume;
-/// more where few leaves stand under nodes of 4096³ voxels (0.27 MB each, eight of them where the model lies around the
-/// origin, whatever its size).
+/// more where few leaves stand under nodes of 128³ voxels (33 kB each) and 4096³ (0.27 MB, whatever the model's size; see
+/// indexOriginFor()).
 double memoryOfFormula(const LayerVolume& volume);
 
 } // namespace patina

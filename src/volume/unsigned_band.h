@@ -9,7 +9,8 @@
 namespace patina {
 
 /// Active voxels within `width` voxels of the surface, with their distance to it, scene units; no signs: the library's own
-/// take for metal whatever the outside cannot reach. Voxel (i, j, k) is centred on (i, j, k) · voxelSize (scene units).
+/// take for metal whatever the outside cannot reach. Voxels are centred on whole multiples of voxelSize (scene
+/// units); the grid's transform says where among them it lies (see IndexSpace and indexOriginFor()).
 /// Empty where the surface has no triangles; what there is when progress is cancelled.
 openvdb::FloatGrid::Ptr unsignedBand(const ClosedSurface& surface, double voxelSize, float width, Progress& progress);
 

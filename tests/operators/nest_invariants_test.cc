@@ -1,4 +1,5 @@
 #include "operators/random_operations.h"
+#include "support/moved_volume.h"
 #include "support/on_threads.h"
 
 namespace patina {
@@ -20,6 +21,19 @@ TEST(Nest, HasTheSameBitsOnAnyNumberOfThreads) {
                     first = hash;
                 ASSERT_EQ(hash, first) << sequence << " on " << threads;
             });
+    }
+}
+
+// Where the model lies around index 0 its leaves come in another order, from eight upper nodes.
+TEST(Nest, HasTheSameBitsWhereverInIndexSpaceItsGridsLie) {
+    for (int sequence = 200; sequence < 212; ++sequence) {
+        const auto here = test::shapeOf(sequence), there = test::shapeOf(sequence);
+        ASSERT_NE(here->volume->grids().space.origin(), openvdb::Coord(0));
+        test::moveTo(*there, openvdb::Coord(0));
+        ASSERT_EQ(contentHash(*there->volume), contentHash(*here->volume)) << sequence;
+        test::randomOperations(*here, sequence);
+        test::randomOperations(*there, sequence);
+        ASSERT_EQ(contentHash(*there->volume), contentHash(*here->volume)) << sequence;
     }
 }
 

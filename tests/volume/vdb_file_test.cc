@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/errors.h"
 #include "support/coated_ball.h"
+#include "support/moved_volume.h"
 #include "support/temporary_folder.h"
 #include "volume/nest_grids.h"
 
@@ -35,6 +36,7 @@ TEST_F(VdbFileTest, ComesBackBitForBit) {
     writeVolume(*piece_->volume, folder_ / "a.vdb");
     const LayerVolume read = readVolume(folder_ / "a.vdb");
     EXPECT_EQ(contentHash(read), contentHash(*piece_->volume));
+    EXPECT_EQ(read.grids().space, piece_->volume->grids().space);
     EXPECT_EQ(read.layers(), piece_->volume->layers());
     EXPECT_EQ(read.palette(), piece_->volume->palette());
     EXPECT_EQ(read.scale().metresPerUnit, 1e-6);
@@ -42,6 +44,22 @@ TEST_F(VdbFileTest, ComesBackBitForBit) {
     EXPECT_EQ(read.provenance.seed, 18446744073709551615ull);
     EXPECT_EQ(read.grids().exteriorBand, piece_->volume->grids().exteriorBand);
     EXPECT_EQ(filesInFolder(), 1);
+}
+
+// As files of this program were before volumes had a place of their own in index space: without a translation.
+TEST_F(VdbFileTest, AVolumeAroundIndexZeroOpensAndGoesOnBitForBit) {
+    LayerVolume old = piece_->volume->clone();
+    test::moveTo(old, openvdb::Coord(0));
+    writeVolume(old, folder_ / "old.vdb");
+    LayerVolume read = readVolume(folder_ / "old.vdb");
+    EXPECT_EQ(read.grids().space, IndexSpace());
+    EXPECT_EQ(read.grids().base->transform().indexToWorld(openvdb::Vec3d(0.0)), openvdb::Vec3d(0.0));
+    EXPECT_EQ(contentHash(read), contentHash(*piece_->volume));
+    SurfaceBinding binding(read, piece_->surface, piece_->closed);
+    Workpiece work{read, binding}, here = piece_->work();
+    for (Workpiece* w : {&work, &here})
+        coat(*w, "dirt", 2.5, nullptr, piece_->progress);
+    EXPECT_EQ(contentHash(read), contentHash(*piece_->volume));
 }
 
 TEST_F(VdbFileTest, HoldsThePromisedGrids) {

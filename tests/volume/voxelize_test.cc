@@ -35,6 +35,22 @@ TEST(Voxelize, TheLatticeIsAnchoredAtTheOrigin) {
     EXPECT_NEAR(grid.transform().indexToWorld(middle).x(), 5.0, 1e-9);
 }
 
+TEST(Voxelize, AModelAroundTheOriginLiesUnderOneUpperNode) {
+    for (const Imath::V3f& middle : {Imath::V3f(0.f), Imath::V3f(4096.f, -8192.f, 50000.f), Imath::V3f(-700.f)}) {
+        SurfaceMesh surface = test::sphere(70.f, 4);
+        for (auto& p : surface.positions)
+            p += middle;
+        const auto piece = test::makePiece(std::move(surface), test::voxelScale());
+        const NestGrids& grids = piece->volume->grids();
+        const auto nodes = grids.base->tree().nodeCount(); // leaves, lower, upper, root
+        EXPECT_EQ(nodes[2], 1u) << middle;
+        EXPECT_EQ(nodes[1], 8u) << middle; // 148 voxels across take two of 128 along each axis
+        EXPECT_EQ(IndexSpace(grids.base->transform()), grids.space);
+        EXPECT_EQ(grids.material->transform(), grids.base->transform());
+        EXPECT_LT(grids.base->tree().getValue(grids.space.index(Imath::V3i(middle))), 0.f);
+    }
+}
+
 TEST(Voxelize, AnOpenSheetGetsABack) {
     const auto piece = test::makePiece(test::sheet(20.f, 10), test::voxelScale());
     const auto& tree = piece->volume->grids().base->tree();

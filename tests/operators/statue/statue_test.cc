@@ -5,6 +5,7 @@
 #include "operators/fields/accessibility.h"
 #include "support/closed_levels.h"
 #include "support/statue.h"
+#include "volume/memory_formula.h"
 #include "volume/stack_probe.h"
 
 #include <gtest/gtest.h>
@@ -52,6 +53,21 @@ TEST(Statue, FilmsAtTrueScaleStandToHalfAPercent) {
                     100.0 * errors[k][errors[k].size() * 9 / 10], count);
         EXPECT_LT(median, 0.005) << k;
         EXPECT_NEAR(sum[k] / count / expected[k], 1.0, 0.006) << k; // with the creases
+    }
+}
+
+TEST(Statue, TakesLittleMoreMemoryThanTheVoxelsOfItsLeaves) {
+    // 1.15 is what is asked at 512 voxels; below that the nodes of 128³ and 4096³ count for more.
+    for (const auto& [voxels, most] : {std::pair(512, 1.15), std::pair(256, 1.25)}) {
+        const auto piece = test::makeStatue(voxels);
+        if (!piece)
+            GTEST_SKIP() << "no Happy Buddha beside the project";
+        Workpiece work = piece->work();
+        for (const char* film : {"tarnish_1", "cuprite_2", "soot"})
+            coat(work, film, 1.2, nullptr, piece->progress);
+        const double memory = memoryOfFormula(*piece->volume);
+        std::printf("%d voxels: memory %.3f of the formula\n", voxels, memory);
+        EXPECT_LE(memory, most) << voxels;
     }
 }
 
