@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/errors.h"
+#include "operators/coat.h"
 #include "support/coated_ball.h"
 #include "support/moved_volume.h"
 #include "support/temporary_folder.h"
