@@ -179,6 +179,11 @@ LobeAlbedo lobeAlbedo(const AlbedoPlace& column, const AlbedoPlace& row) {
     return mix(mix(low[0], low[1], column.weight), mix(high[0], high[1], column.weight), row.weight);
 }
 
+AlbedoGrid albedoGrid() {
+    static_assert(sizeof(LobeAlbedo) == 2 * sizeof(float));
+    return {&albedoTable().directional[0][0].flat, cosineCount};
+}
+
 LobeAlbedo lobeAlbedo(float cosine, float alpha) {
     return lobeAlbedo(albedoColumn(cosine), albedoRow(alpha));
 }

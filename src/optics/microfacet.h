@@ -23,26 +23,39 @@ inline float ggxDistribution(const Imath::V3f& half, float alpha) {
 float smithMasking(const Imath::V3f& direction, float alpha);
 /// G2(wo, wi) / (4 cos_o cos_i): all of a microfacet BRDF but D and F; finite towards grazing.
 float smithVisibility(const Imath::V3f& wo, const Imath::V3f& wi, float alpha);
-/// A normal in proportion to what wo sees of it (Heitz 2018); its density is smithMasking · D · (wo·h) / cos_o.
-inline Imath::V3f sampleVisibleNormal(const Imath::V3f& wo, float alpha, float u1, float u2) {
-    Imath::V3f stretched(alpha * wo.x, alpha * wo.y, wo.z);
-    const float aside2 = stretched.x * stretched.x + stretched.y * stretched.y;
-    const float scale = 1.f / std::sqrt(aside2 + stretched.z * stretched.z);
-    stretched *= scale;
+/// A normal in proportion to what wo = (x, y, z) sees of it (Heitz 2018), as (nx, ny, nz); its density is
+/// smithMasking · D · (wo·h) / cos_o. In plain numbers, which loops over lanes can take many of.
+inline void sampleVisibleNormal(float x, float y, float z, float alpha, float u1, float u2, float& nx, float& ny,
+                                float& nz) {
+    float sx = alpha * x, sy = alpha * y, sz = z; // stretched
+    const float aside2 = sx * sx + sy * sy;
+    const float scale = 1.f / std::sqrt(aside2 + sz * sz);
+    sx *= scale;
+    sy *= scale;
+    sz *= scale;
     // Two axes across it: (-y, x, 0) made as long as 1, and the cross product with that.
-    const float aside = std::sqrt(aside2) * scale, turned = aside > 1e-7f ? 1.f / aside : 0.f;
-    const float x1 = aside > 1e-7f ? -stretched.y * turned : 1.f, y1 = stretched.x * turned;
-    const Imath::V3f across(-stretched.z * y1, stretched.z * x1, stretched.x * y1 - stretched.y * x1);
+    const float aside = std::sqrt(aside2) * scale, turned = 1.f / (aside > 1e-7f ? aside : 1.f);
+    const float x1 = aside > 1e-7f ? -sy * turned : 1.f, y1 = aside > 1e-7f ? sx * turned : 0.f;
+    const float acrossX = -sz * y1, acrossY = sz * x1, acrossZ = sx * y1 - sy * x1;
     const float radius = std::sqrt(u1);
     const CirclePoint direction = circlePoint(u2);
-    const float p1 = radius * direction.cosine, left = std::max(0.f, 1.f - p1 * p1);
-    const float s = 0.5f * (1.f + stretched.z);
+    const float p1 = radius * direction.cosine, left = 0.f < 1.f - p1 * p1 ? 1.f - p1 * p1 : 0.f;
+    const float s = 0.5f * (1.f + sz);
     const float p2 = (1.f - s) * std::sqrt(left) + s * radius * direction.sine;
-    const float p3 = std::sqrt(std::max(0.f, left - p2 * p2));
-    const Imath::V3f n(alpha * (p1 * x1 + p2 * across.x + p3 * stretched.x),
-                       alpha * (p1 * y1 + p2 * across.y + p3 * stretched.y),
-                       std::max(1e-6f, p2 * across.z + p3 * stretched.z));
-    return n * (1.f / std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z));
+    const float rest = 0.f < left - p2 * p2 ? left - p2 * p2 : 0.f;
+    const float p3 = std::sqrt(rest);
+    const float upward = p2 * acrossZ + p3 * sz;
+    const float hx = alpha * (p1 * x1 + p2 * acrossX + p3 * sx), hy = alpha * (p1 * y1 + p2 * acrossY + p3 * sy);
+    const float hz = 1e-6f < upward ? upward : 1e-6f;
+    const float inverse = 1.f / std::sqrt(hx * hx + hy * hy + hz * hz);
+    nx = hx * inverse;
+    ny = hy * inverse;
+    nz = hz * inverse;
+}
+inline Imath::V3f sampleVisibleNormal(const Imath::V3f& wo, float alpha, float u1, float u2) {
+    Imath::V3f n;
+    sampleVisibleNormal(wo.x, wo.y, wo.z, alpha, u1, u2, n.x, n.y, n.z);
+    return n;
 }
 
 /// Schlick's (1 - c)^5.
@@ -67,6 +80,12 @@ struct AlbedoPlace {
 AlbedoPlace albedoColumn(float cosine);
 AlbedoPlace albedoRow(float alpha);
 LobeAlbedo lobeAlbedo(const AlbedoPlace& column, const AlbedoPlace& row);
+/// The table itself, for who looks up many at once: flat and rising of each place, one width after the other.
+struct AlbedoGrid {
+    const float* values;
+    int columns; ///< cosines of a width
+};
+AlbedoGrid albedoGrid();
 /// 2 ∫ albedo c dc.
 LobeAlbedo meanLobeAlbedo(float alpha);
 /// The least of flat + rising over all angles.

@@ -56,6 +56,7 @@ class PatinaBsdf {
 
   private:
     friend class SeenBsdf;
+    friend class BsdfBatch;
 
     static constexpr int maxLobes = StackOptics::maxLayers + 1;
 

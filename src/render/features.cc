@@ -29,34 +29,47 @@ Features renderFeatures(const RenderScene& scene, const FeaturesAt& featuresAt, 
     tbb::parallel_for(0, height, [&](int y) {
         if (progress.cancelled())
             return;
+        // A row at once: of each pixel the ray through its middle, then those of its samples.
+        RayBatch rays;
+        const auto aim = [&](const CameraRay& ray) { rays.add(ray.origin, ray.direction, infinite); };
         for (int x = 0; x < width; ++x) {
-            StagePoint point;
-            const CameraRay middle = camera.ray((float(x) + 0.5f) / float(width), (float(y) + 0.5f) / float(height));
-            if (stage.intersect(middle.origin, middle.direction, false, point) == StageHit::surface) {
-                *features.depth.at(x, y) = (point.position - middle.origin).length();
-                *features.material.at(x, y) = float(featuresAt(point.surface).material);
-            }
+            aim(camera.ray((float(x) + 0.5f) / float(width), (float(y) + 0.5f) / float(height)));
             PixelSampler sampler(random, x, y);
-            V3f albedo(0.f), normal(0.f);
-            float thickness = 0.f, covered = 0.f;
             for (int sample = 0; sample < samples; ++sample) {
                 sampler.startSample(std::uint32_t(sample));
                 const V2f in = sampler.next2(), lens = sampler.next2();
-                const CameraRay ray =
-                    camera.ray((float(x) + in.x) / float(width), (float(y) + in.y) / float(height), lens);
-                if (stage.intersect(ray.origin, ray.direction, false, point) != StageHit::surface)
-                    continue;
-                const PointFeatures here = featuresAt(point.surface);
-                albedo += here.albedo;
-                normal += point.shading.normal;
-                thickness += here.thicknessUm;
-                covered += 1.f;
+                aim(camera.ray((float(x) + in.x) / float(width), (float(y) + in.y) / float(height), lens));
             }
-            const float share = 1.f / float(samples);
-            features.albedo.setRgb(x, y, albedo * share);
-            features.normal.setRgb(x, y, normal * share);
-            *features.thickness.at(x, y) = thickness * share;
-            *features.alpha.at(x, y) = covered * share;
+        }
+        HitBatch hits;
+        stage.rays().intersect(rays, true, hits);
+        std::vector<int> from;
+        for (std::size_t ray = 0; ray < rays.count; ++ray)
+            if (hits.triangle[ray] >= 0)
+                from.push_back(int(ray));
+        if (from.empty())
+            return;
+        const std::size_t seen = from.size(), padded = BsdfBatch::padded(seen);
+        from.resize(padded, from.front());
+        SurfaceLanes at;
+        VectorLanes wo;
+        at.resize(padded);
+        wo.resize(padded);
+        stage.shade(rays, hits, from, seen, at, wo);
+        const float share = 1.f / float(samples);
+        for (std::size_t i = 0; i < seen; ++i) {
+            const auto ray = std::size_t(from[i]);
+            const int x = int(ray / std::size_t(samples + 1));
+            const PointFeatures here = featuresAt({hits.triangle[ray], hits.u[ray], hits.v[ray]});
+            if (ray % std::size_t(samples + 1) == 0) {
+                *features.depth.at(x, y) = (at.position[i] - rays.origin[ray]).length();
+                *features.material.at(x, y) = float(here.material);
+                continue;
+            }
+            features.albedo.setRgb(x, y, features.albedo.rgb(x, y) + here.albedo * share);
+            features.normal.setRgb(x, y, features.normal.rgb(x, y) + at.normal[i] * share);
+            *features.thickness.at(x, y) += here.thicknessUm * share;
+            *features.alpha.at(x, y) += share;
         }
     });
     progress.checkpoint();

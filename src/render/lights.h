@@ -43,6 +43,8 @@ class Lights {
     /// their part of all light is judged
     void setAreaLights(AreaLightSet lights, float distance);
     const AreaLightSet& area() const { return area_; }
+    /// Whether the environment is the same from everywhere and sampled by the cosine alone.
+    bool isEven() const { return tables_.empty(); }
     bool hasKey() const { return key_.has_value(); }
 
     /// Of one source, or of both that are far away together, from a unit direction.

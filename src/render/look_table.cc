@@ -1,6 +1,9 @@
 #include "render/look_table.h"
 
+#include "render/look_kernels.h"
+
 #include <algorithm>
+#include <limits>
 
 namespace patina {
 
@@ -79,6 +82,26 @@ PatinaBsdf LookTable::bsdf(const Imath::V3i& corners, float u, float v) const {
     }
     bsdf.normalise();
     return bsdf;
+}
+
+void LookTable::bsdfs(const std::vector<Imath::V3i>& triangles, const HitBatch& hits, const std::vector<int>& from,
+                      std::size_t count, BsdfBatch& into) const {
+    if (values_.size() > std::size_t(std::numeric_limits<int>::max())) { // lanes count in single words
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto hit = std::size_t(from[i]);
+            into.set(i, bsdf(triangles[std::size_t(hits.triangle[hit])], hits.u[hit], hits.v[hit]));
+        }
+        return;
+    }
+    into.need(lobes_);
+    VectorLanes& diffuse = into.diffuse();
+    LookLanes lanes{BsdfBatch::padded(count), from.data(),    hits.triangle.data(), hits.u.data(),    hits.v.data(),
+                    &triangles[0].x,          values_.data(), int(stride_),         diffuse.x.data(), diffuse.y.data(),
+                    diffuse.z.data(),         into.meanAir(), into.leastAir()};
+    mixDiffuseLanes(lanes);
+    for (int k = 0; k < lobes_; ++k)
+        mixLobeLanes({lanes, 3 + valuesPerLobe * k, shapes_[std::size_t(k)], into.rows(k)});
+    into.normalise(model_, count);
 }
 
 } // namespace patina

@@ -1,7 +1,9 @@
 #pragma once
 // The looks of a mesh's vertices, packed for mixing: shading costs three reads and no optics.
 
+#include "optics/bsdf_batch.h"
 #include "optics/patina_bsdf.h"
+#include "surface/ray_batch.h"
 
 #include <Imath/ImathVec.h>
 
@@ -24,6 +26,10 @@ class LookTable {
 
     /// Mixed over a triangle, by the weights of its second and third corner. Safe from any thread.
     PatinaBsdf bsdf(const Imath::V3i& corners, float u, float v) const;
+
+    /// The same of many hits: lanes 0 … count - 1 of a batch that has begun (scene.h, MaterialsAt).
+    void bsdfs(const std::vector<Imath::V3i>& triangles, const HitBatch& hits, const std::vector<int>& from,
+               std::size_t count, BsdfBatch& into) const;
 
   private:
     // Colour, edge colour, air, edge of the air.

@@ -1,7 +1,7 @@
 #include "render/path_tracer.h"
 
 #include "base/errors.h"
-#include "render/path_block.h"
+#include "render/path_batch.h"
 #include "render/stage.h"
 
 #include <tbb/blocked_range.h>
@@ -18,7 +18,7 @@ namespace patina {
 namespace {
 
 constexpr int tileSize = 16;
-static_assert(tileSize % PathBlock::size == 0);
+static_assert(tileSize % PathBatch::size == 0);
 
 void check(const RenderScene& scene, const RenderOptions& options) {
     if (!scene.surface || scene.surface->triangles.empty())
@@ -60,13 +60,13 @@ Rendering render(const RenderScene& scene, const Camera& camera, const Lights& l
     const auto takeRound = [&](int first, int last) {
         std::atomic<int> done{0};
         tbb::parallel_for(tbb::blocked_range<int>(0, across * down, 1), [&](const tbb::blocked_range<int>& range) {
-            PathBlock block(setting, camera, random);
+            PathBatch block(setting, camera, random);
             for (int tile = range.begin(); tile != range.end(); ++tile) {
                 progress.checkpoint();
                 const int left = tile % across * tileSize, top = tile / across * tileSize;
                 std::uint64_t traced = 0;
-                for (int y = top; y < std::min(top + tileSize, options.height); y += PathBlock::size)
-                    for (int x = left; x < std::min(left + tileSize, options.width); x += PathBlock::size)
+                for (int y = top; y < std::min(top + tileSize, options.height); y += PathBatch::size)
+                    for (int x = left; x < std::min(left + tileSize, options.width); x += PathBatch::size)
                         traced += block.addSamples(result.image, x, y, first, last);
                 rays += traced;
                 const int finished = ++done;

@@ -37,6 +37,17 @@ StackShader::StackShader(const LayerVolume& volume, const SurfaceMesh& surface, 
                                                      isShort(corners.z, corners.x));
         }
     }
+    allMixed_ = std::find(mixed_.begin(), mixed_.end(), char(0)) == mixed_.end();
+}
+
+void StackShader::bsdfs(const HitBatch& hits, const std::vector<int>& from, std::size_t count, BsdfBatch& into) const {
+    if (reading_ != StackReading::points)
+        looks_.bsdfs(surface_.triangles, hits, from, count, into);
+    for (std::size_t i = 0; i < count && !allMixed_; ++i) {
+        const auto hit = std::size_t(from[i]);
+        if (!mixes(hits.triangle[hit]))
+            into.set(i, bsdf({hits.triangle[hit], hits.u[hit], hits.v[hit]}));
+    }
 }
 
 void StackShader::readVertices() {

@@ -1,13 +1,16 @@
 #pragma once
 // The look of a point of the model, read from the volume itself: what pictures are shaded with.
 
+#include "optics/bsdf_batch.h"
 #include "optics/layer_stack.h"
 #include "optics/patina_bsdf.h"
 #include "render/features.h"
 #include "render/look_table.h"
 #include "surface/mesh.h"
+#include "surface/ray_batch.h"
 #include "volume/stack_probe.h"
 
+#include <cstddef>
 #include <vector>
 
 namespace patina {
@@ -31,6 +34,8 @@ class StackShader {
                 StackReading reading = StackReading::adaptive);
 
     PatinaBsdf bsdf(const SurfacePoint& point) const;
+    /// Of many points at once (scene.h, MaterialsAt), to the bit the same.
+    void bsdfs(const HitBatch& hits, const std::vector<int>& from, std::size_t count, BsdfBatch& into) const;
     PointFeatures features(const SurfacePoint& point) const;
 
     /// Height of the air's interface above the base at every vertex, scene units as drawn in the volume.
@@ -49,6 +54,7 @@ class StackShader {
     std::vector<float> heights_;
     std::vector<float> thicknessesUm_; ///< of each vertex, layer by layer
     LookTable looks_;
+    bool allMixed_ = false;
     std::vector<char> mixed_; ///< of each triangle: whether its corners tell what lies between them
 };
 

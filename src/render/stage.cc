@@ -24,32 +24,25 @@ constexpr float backdropShade = 0.42f;
 constexpr float tableSize = 1.08f;
 constexpr float tableThickness = 0.05f;
 
-// Turns a shading normal just so far that a mirror ray along it does not go into the triangle (Keller et al. 2017, "The
-// Iray Light Transport Simulation and Rendering System", bends it likewise). Without it, silhouettes of coarse meshes
-// go black where the smooth normal looks away from the viewer.
-V3f bendTowards(const V3f& normal, const V3f& geometric, const V3f& wo) {
-    const V3f mirrored = 2.f * (wo ^ normal) * normal - wo;
-    const float least = std::min(0.9f * (wo ^ geometric), 0.02f);
-    const float below = least - (mirrored ^ geometric);
-    if (below <= 0.f && (wo ^ normal) > 0.f)
-        return normal;
-    const V3f lifted = unit(mirrored + std::max(below, 0.f) * geometric);
-    const V3f bent = wo + lifted;
-    return bent.length2() > 1e-8f ? unit(bent) : geometric;
-}
-
 } // namespace
 
-BsdfValue SeenLambert::evaluate(const V3f& wi) const {
-    return wi.z > 0.f ? BsdfValue{V3f(albedo / pi), wi.z / pi} : BsdfValue{};
+void SurfaceLanes::resize(std::size_t count) {
+    for (VectorLanes* lanes : {&position, &origin, &tangent, &bitangent, &normal})
+        lanes->resize(count);
 }
 
-BsdfSample SeenLambert::sample(const V3f& u) const {
-    // Uniform on the disc below, lifted to the hemisphere (Malley): density cos / pi, weight the albedo.
-    const float r = std::sqrt(u.x);
-    const CirclePoint around = circlePoint(u.y);
-    const float z = std::sqrt(std::max(0.f, 1.f - u.x));
-    return {{r * around.cosine, r * around.sine, z}, z / pi, V3f(albedo)};
+void SurfaceLanes::set(std::size_t lane, const StagePoint& point) {
+    position.set(lane, point.position);
+    origin.set(lane, point.origin);
+    tangent.set(lane, point.shading.tangent);
+    bitangent.set(lane, point.shading.bitangent);
+    normal.set(lane, point.shading.normal);
+}
+
+Frames SurfaceLanes::frames() {
+    return {{tangent.x.data(), tangent.y.data(), tangent.z.data()},
+            {bitangent.x.data(), bitangent.y.data(), bitangent.z.data()},
+            {normal.x.data(), normal.y.data(), normal.z.data()}};
 }
 
 Stage::Stage(const RenderScene& scene, const Lights& lights) : Stage(scene) {
@@ -72,7 +65,8 @@ bool Stage::isInside(const V3f& position) const {
 }
 
 Stage::Stage(const RenderScene& scene)
-    : scene_(scene), rays_(scene.surface->positions, scene.surface->triangles), upright_(uprightFrame(scene.up)) {
+    : scene_(scene), rays_(scene.surface->positions, scene.surface->triangles),
+      floorMaterial_(OpticsModel::energyConserving, V3f(scene.groundAlbedo)), upright_(uprightFrame(scene.up)) {
     const Imath::Box3f box = scene.setting ? *scene.setting : scene.surface->bounds();
     centre_ = box.center();
     radius_ = std::max(0.5f * box.size().length(), 1e-20f);
@@ -115,67 +109,46 @@ float Stage::reach(const V3f& origin, const V3f& direction) const {
     return floorAlong(origin, direction).distance;
 }
 
-StageHit Stage::intersect(const V3f& origin, const V3f& direction, bool indirect, StagePoint& point) const {
-    return meet(rays_.intersect(origin, direction, 0.f, reach(origin, direction)), origin, direction, indirect, point);
-}
-
-StageHit Stage::meet(const std::optional<RayScene::Hit>& hit, const V3f& origin, const V3f& direction, bool indirect,
-                     StagePoint& point) const {
-    if (hit) {
-        const bool back = (hit->geometricNormal ^ direction) > 0.f;
-        if (back && indirect && scene_.surface->closed)
-            return StageHit::inside;
-        shadeSurface(*hit, direction, back, point);
-        return StageHit::surface;
-    }
+StagePoint Stage::floorPoint(const V3f& origin, const V3f& direction) const {
     const Floor floor = floorAlong(origin, direction);
-    if (!std::isfinite(floor.distance))
-        return StageHit::nothing;
+    StagePoint point;
     point.position = origin + direction * floor.distance;
     if (!floor.isTable)
         point.position += upright_.normal * (floorHeight_ - (point.position ^ upright_.normal));
     point.origin = point.position + floor.normal * clearance_;
     point.shading = floor.normal != upright_.normal ? frameAround(floor.normal) : upright_;
-    return StageHit::ground;
+    return point;
 }
 
-void Stage::shadeSurface(const RayScene::Hit& hit, const V3f& direction, bool back, StagePoint& point) const {
+void Stage::shade(const RayBatch& rays, const HitBatch& hits, const std::vector<int>& from, std::size_t count,
+                  SurfaceLanes& at, VectorLanes& wo) const {
     const SurfaceMesh& mesh = *scene_.surface;
-    const V3i& triangle = mesh.triangles[std::size_t(hit.point.triangle)];
-    const float weights[3] = {1.f - hit.point.u - hit.point.v, hit.point.u, hit.point.v};
-    const float side = back ? -1.f : 1.f;
-    V3f position(0.f), normal(0.f);
-    for (int i = 0; i < 3; ++i) {
-        position += mesh.positions[std::size_t(triangle[i])] * weights[i];
-        normal += mesh.normals[std::size_t(triangle[i])] * (weights[i] * side);
-    }
-    const V3f geometric = hit.geometricNormal.normalized() * side;
-    normal = normal.length2() > 1e-12f ? unit(normal) : geometric;
-    if ((normal ^ geometric) <= 0.f)
-        normal = geometric;
-
-    // The triangle stands for a curved surface that bulges out over it. Starting shadow rays from the planes through
-    // the corners, weighted, instead of from the flat triangle takes the black facets off the terminator (Hanika 2021,
-    // "Hacking the Shadow Terminator", Ray Tracing Gems II, chapter 4).
-    V3f lift(0.f);
-    for (int i = 0; i < 3; ++i) {
-        const V3f cornerNormal = mesh.normals[std::size_t(triangle[i])] * side;
-        const float below = std::min(0.f, (position - mesh.positions[std::size_t(triangle[i])]) ^ cornerNormal);
-        lift -= cornerNormal * (below * weights[i]);
-    }
-    point.surface = hit.point;
-    point.position = position;
-    point.origin = position + lift + geometric * clearance_;
-    point.shading = frameAround(bendTowards(normal, geometric, -direction));
+    const auto read = [](const VectorLanes& v) { return ConstVectors{v.x.data(), v.y.data(), v.z.data()}; };
+    const auto write = [](VectorLanes& v) { return Vectors{v.x.data(), v.y.data(), v.z.data()}; };
+    shadeLanes({BsdfBatch::padded(count), from.data(), hits.triangle.data(), hits.u.data(), hits.v.data(),
+                read(hits.geometricNormal), read(rays.direction), &mesh.triangles[0].x, &mesh.positions[0].x,
+                &mesh.normals[0].x, clearance_, write(at.position), write(at.origin), at.frames(), write(wo)});
 }
 
-bool Stage::setBlocks(const StagePoint& from, const V3f& direction, float distance) const {
+void Stage::materials(const HitBatch& hits, const std::vector<int>& from, std::size_t count, BsdfBatch& into) const {
+    if (scene_.materials) {
+        scene_.materials(hits, from, count, into);
+        return;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto hit = std::size_t(from[i]);
+        const SurfacePoint point{hits.triangle[hit], hits.u[hit], hits.v[hit]};
+        into.set(i, scene_.material(point, V3f(positionAt(*scene_.surface, point))));
+    }
+}
+
+bool Stage::setBlocks(const V3f& from, const V3f& direction, float distance) const {
     if (scene_.ground) {
-        const float height = from.origin ^ upright_.normal, rising = direction ^ upright_.normal;
+        const float height = from ^ upright_.normal, rising = direction ^ upright_.normal;
         if (std::isinf(distance) ? rising < -1e-7f && height > floorHeight_ : height + rising * distance < floorHeight_)
             return true;
     }
-    return table_ && table_->intersect(from.origin, direction, distance);
+    return table_ && table_->intersect(from, direction, distance);
 }
 
 float Stage::backdropShare(const V3f& floorPoint) const {

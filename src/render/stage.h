@@ -1,37 +1,41 @@
 #pragma once
 // A scene made ready for paths: where rays meet surface and floor, and what may be seen from there.
 
+#include "base/vector_lanes.h"
+#include "optics/bsdf_batch.h"
 #include "optics/patina_bsdf.h"
 #include "render/lights.h"
+#include "render/path_kernels.h"
 #include "render/scene.h"
 #include "render/turntable.h"
+#include "surface/ray_batch.h"
 #include "surface/ray_scene.h"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
 
 namespace patina {
 
-/// A perfectly diffuse reflector, with SeenBsdf's functions.
-struct SeenLambert {
-    float albedo;
-
-    BsdfValue evaluate(const Imath::V3f& wi) const;
-    BsdfSample sample(const Imath::V3f& u) const;
-};
-
-enum class StageHit {
-    nothing, ///< the ray leaves the scene
-    surface,
-    ground,
-    inside, ///< the back of a closed surface: only rounding leads there
-};
-
-/// Where a path meets something, turned to the side it came from.
+/// Where a path met floor or turntable.
 struct StagePoint {
-    SurfacePoint surface;
-    Imath::V3f position{0.f}; ///< on the triangle
-    Imath::V3f origin{0.f};   ///< of rays that leave: clear of the triangle, on the smooth surface it stands for
+    Imath::V3f position{0.f};
+    Imath::V3f origin{0.f}; ///< of rays that leave, clear of it
     Frame shading;
 };
 
+/// Where paths met something, turned to the side they came from.
+struct SurfaceLanes {
+    VectorLanes position; ///< on the triangle
+    VectorLanes origin;   ///< of rays that leave: clear of the triangle, on the smooth surface it stands for
+    VectorLanes tangent, bitangent, normal;
+
+    void resize(std::size_t count);
+    void set(std::size_t lane, const StagePoint& point);
+    Frames frames();
+};
+
+/// A scene made ready for paths: where rays meet surface and floor, and what may be seen from there.
 class Stage {
   public:
     /// \param scene  its surface must outlive the stage.
@@ -46,18 +50,22 @@ class Stage {
     float reach(const Imath::V3f& origin, const Imath::V3f& direction) const;
     /// The surface that rays are traced against.
     const RayScene& rays() const { return rays_; }
-    /// Where a ray ends that met `hit` first, or nothing within its reach. `indirect`: not a camera ray, so that the
-    /// inside of a closed surface means an error of rounding.
-    StageHit meet(const std::optional<RayScene::Hit>& hit, const Imath::V3f& origin, const Imath::V3f& direction,
-                  bool indirect, StagePoint& point) const;
-    /// Traces one ray and says where it ends.
-    StageHit intersect(const Imath::V3f& origin, const Imath::V3f& direction, bool indirect, StagePoint& point) const;
+    /// Whether rays that meet nothing within their reach met the floor there, where that is finite.
+    bool hasFloor() const { return scene_.ground; }
+    bool isClosed() const { return scene_.surface->closed; }
+    /// Where a ray meets floor or turntable, at its reach.
+    StagePoint floorPoint(const Imath::V3f& origin, const Imath::V3f& direction) const;
+    /// Where hits number from[0] … from[count - 1] are, as lanes; `from` and the lanes go on up to a multiple of 16.
+    /// \param wo  receives the direction that each ray came from, in the lane's frame
+    void shade(const RayBatch& rays, const HitBatch& hits, const std::vector<int>& from, std::size_t count,
+               SurfaceLanes& at, VectorLanes& wo) const;
     /// Whether floor or turntable stand between the point and a light at this distance, infinity included: known
     /// without tracing anything.
-    bool setBlocks(const StagePoint& from, const Imath::V3f& direction, float distance) const;
+    bool setBlocks(const Imath::V3f& from, const Imath::V3f& direction, float distance) const;
 
-    PatinaBsdf material(const StagePoint& point) const { return scene_.material(point.surface, point.position); }
-    float groundAlbedo() const { return scene_.groundAlbedo; }
+    /// Their materials, as lanes of a batch that has begun.
+    void materials(const HitBatch& hits, const std::vector<int>& from, std::size_t count, BsdfBatch& into) const;
+    const PatinaBsdf& floorMaterial() const { return floorMaterial_; }
 
     /// How far a point of the floor has faded into the backdrop: 0 near the object, 1 far away.
     float backdropShare(const Imath::V3f& floorPoint) const;
@@ -73,10 +81,10 @@ class Stage {
         bool isTable;
     };
     Floor floorAlong(const Imath::V3f& origin, const Imath::V3f& direction) const;
-    void shadeSurface(const RayScene::Hit& hit, const Imath::V3f& direction, bool back, StagePoint& point) const;
 
     RenderScene scene_;
     RayScene rays_;
+    PatinaBsdf floorMaterial_;
     Frame upright_;
     Imath::V3f centre_;
     float radius_;      ///< half the diagonal of the box around the surface

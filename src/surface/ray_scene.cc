@@ -46,18 +46,22 @@ void keepSmallestIndex(const RTCFilterFunctionNArguments* arguments) {
 }
 
 /// Rays beyond the packet's count are switched off, but get numbers that Embree may calculate with.
-void fillQuery(const RayScene::Packet& packet, RTCRay16& query, int* valid) {
+void fillQuery(const RayBatch& rays, std::size_t first, int count, RTCRay16& query, int* valid) {
+    const auto put = [&](const std::vector<float>& from, float* to) {
+        const float* numbers = from.data() + first;
+        std::copy_n(numbers, count, to);
+        std::fill(to + count, to + RayScene::packetSize, numbers[0]);
+    };
+    put(rays.origin.x, query.org_x);
+    put(rays.origin.y, query.org_y);
+    put(rays.origin.z, query.org_z);
+    put(rays.direction.x, query.dir_x);
+    put(rays.direction.y, query.dir_y);
+    put(rays.direction.z, query.dir_z);
+    put(rays.farthest, query.tfar);
     for (int i = 0; i < RayScene::packetSize; ++i) {
-        const int from = i < packet.count ? i : 0;
-        valid[i] = i < packet.count ? -1 : 0;
-        query.org_x[i] = packet.originX[from];
-        query.org_y[i] = packet.originY[from];
-        query.org_z[i] = packet.originZ[from];
-        query.dir_x[i] = packet.directionX[from];
-        query.dir_y[i] = packet.directionY[from];
-        query.dir_z[i] = packet.directionZ[from];
+        valid[i] = i < count ? -1 : 0;
         query.tnear[i] = 0.f;
-        query.tfar[i] = packet.farthest[from];
         query.time[i] = 0.f;
         query.mask[i] = 0xffffffffu;
         query.id[i] = static_cast<unsigned>(i);
@@ -231,26 +235,62 @@ std::optional<RayScene::Hit> RayScene::intersect(const V3f& origin, const V3f& d
     return Hit{{static_cast<int>(hit.primID), hit.u, hit.v}, query.ray.tfar, {hit.Ng_x, hit.Ng_y, hit.Ng_z}};
 }
 
-void RayScene::intersect(const Packet& packet, std::optional<Hit>* hits) const {
-    NearestContext context;
-    rtcInitIntersectContext(&context.context);
-    if (packet.coherent)
-        context.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+void RayScene::intersect(const RayBatch& rays, bool coherent, HitBatch& hits) const {
+    hits.resize(std::max(hits.triangle.size(), rays.count));
     alignas(64) int valid[packetSize];
     alignas(64) RTCRayHit16 query;
-    fillQuery(packet, query.ray, valid);
-    for (int i = 0; i < packetSize; ++i) {
-        context.distance[i] = -1.f;
-        query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-        query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    for (std::size_t first = 0; first < rays.count; first += packetSize) {
+        const int count = static_cast<int>(std::min<std::size_t>(packetSize, rays.count - first));
+        NearestContext context;
+        rtcInitIntersectContext(&context.context);
+        if (coherent)
+            context.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+        fillQuery(rays, first, count, query.ray, valid);
+        for (int i = 0; i < packetSize; ++i) {
+            context.distance[i] = -1.f;
+            query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+            query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+        }
+        rtcIntersect16(valid, scene_->scene, &context.context, &query);
+        for (int i = 0; i < count; ++i)
+            hits.triangle[first + i] =
+                query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID ? -1 : static_cast<int>(query.hit.primID[i]);
+        std::copy_n(query.hit.u, count, hits.u.data() + first);
+        std::copy_n(query.hit.v, count, hits.v.data() + first);
+        std::copy_n(query.ray.tfar, count, hits.distance.data() + first);
+        std::copy_n(query.hit.Ng_x, count, hits.geometricNormal.x.data() + first);
+        std::copy_n(query.hit.Ng_y, count, hits.geometricNormal.y.data() + first);
+        std::copy_n(query.hit.Ng_z, count, hits.geometricNormal.z.data() + first);
     }
-    rtcIntersect16(valid, scene_->scene, &context.context, &query);
-    for (int i = 0; i < packet.count; ++i) {
-        hits[i].reset();
-        if (query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID)
-            hits[i] = Hit{{static_cast<int>(query.hit.primID[i]), query.hit.u[i], query.hit.v[i]},
-                          query.ray.tfar[i],
-                          {query.hit.Ng_x[i], query.hit.Ng_y[i], query.hit.Ng_z[i]}};
+}
+
+void RayScene::occluded(const RayBatch& rays, std::vector<char>& blocked) const {
+    // Embree takes a stream of rays in its own order, octant by octant.
+    constexpr std::size_t streamSize = 256;
+    RTCRay stream[streamSize];
+    blocked.resize(std::max(blocked.size(), rays.count));
+    for (std::size_t first = 0; first < rays.count; first += streamSize) {
+        const std::size_t count = std::min(streamSize, rays.count - first);
+        for (std::size_t i = 0; i < count; ++i) {
+            const V3f origin = rays.origin[first + i], direction = rays.direction[first + i];
+            stream[i] = {origin.x,
+                         origin.y,
+                         origin.z,
+                         0.f,
+                         direction.x,
+                         direction.y,
+                         direction.z,
+                         0.f,
+                         rays.farthest[first + i],
+                         0xffffffffu,
+                         static_cast<unsigned>(i),
+                         0};
+        }
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        rtcOccluded1M(scene_->scene, &context, stream, static_cast<unsigned>(count), sizeof(RTCRay));
+        for (std::size_t i = 0; i < count; ++i)
+            blocked[first + i] = stream[i].tfar < 0.f;
     }
 }
 

@@ -2,6 +2,7 @@
 // Rays against a triangle mesh (Embree).
 
 #include "surface/mesh.h"
+#include "surface/ray_batch.h"
 
 #include <limits>
 #include <memory>
@@ -27,26 +28,17 @@ class RayScene {
     /// The first hit with nearest ≤ distance ≤ farthest, distances in lengths of `direction`. Watertight along edges.
     std::optional<Hit> intersect(const Imath::V3f& origin, const Imath::V3f& direction, float nearest = 0.f,
                                  float farthest = std::numeric_limits<float>::infinity()) const;
-    /// Up to 16 rays that are traced together: several times the speed of one after the other where they start near
-    /// each other and go much the same way, as a camera's do. The last bits of a hit may depend on the company.
+    /// What each ray of a batch meets first, from its origin on. Traced in packets of `packetSize` that follow each
+    /// other in the batch. The last bits of a hit may depend on the packet's company. \param coherent  the rays of a
+    /// packet start near each other and go much the same way, as a camera's do: three times the speed for those, and
+    /// half of it for others
+    void intersect(const RayBatch& rays, bool coherent, HitBatch& hits) const;
     static constexpr int packetSize = 16;
-    struct Packet {
-        int count = 0;
-        bool coherent = false; ///< whether they go much the same way
-        alignas(64) float originX[packetSize], originY[packetSize], originZ[packetSize];
-        alignas(64) float directionX[packetSize], directionY[packetSize], directionZ[packetSize];
-        alignas(64) float farthest[packetSize]; ///< in lengths of the direction
-
-        void set(int ray, const Imath::V3f& origin, const Imath::V3f& direction, float reach) {
-            originX[ray] = origin.x, originY[ray] = origin.y, originZ[ray] = origin.z;
-            directionX[ray] = direction.x, directionY[ray] = direction.y, directionZ[ray] = direction.z;
-            farthest[ray] = reach;
-        }
-    };
-    /// \param hits  receives what each ray of the packet meets first
-    void intersect(const Packet& packet, std::optional<Hit>* hits) const;
     /// Whether anything is hit between nearest and farthest.
     bool occluded(const Imath::V3f& origin, const Imath::V3f& direction, float nearest, float farthest) const;
+    /// The same for a batch, from the origins on: a third to half of the time where there are hundreds.
+    /// \param blocked  receives 0 or 1 for each ray
+    void occluded(const RayBatch& rays, std::vector<char>& blocked) const;
 
     struct Closest {
         SurfacePoint point;

@@ -128,21 +128,21 @@ TEST(PathFaults, NoLightLeaksThroughSeamsAndDicedPatches) {
     ASSERT_GT(fine.triangles.size(), 20000u);
     const RayScene rays(fine.positions, fine.triangles);
     constexpr float infinite = std::numeric_limits<float>::infinity();
-    RayScene::Packet packet;
-    std::optional<RayScene::Hit> hits[RayScene::packetSize];
+    RayBatch batch;
+    HitBatch hits;
     std::size_t leaks = 0, leaksOfPackets = 0;
     for (const V3i& t : fine.triangles)
         for (int i = 0; i < 3; ++i) {
             const V3f& a = fine.positions[std::size_t(t[i])];
             const V3f& b = fine.positions[std::size_t(t[(i + 1) % 3])];
-            packet.count = 0;
+            batch.count = 0;
             for (const float along : {0.37f, 0.5f}) {
                 const V3f direction = (a * (1.f - along) + b * along).normalized();
                 leaks += !rays.intersect(V3f(0.f), direction);
-                packet.set(packet.count++, V3f(0.f), direction, infinite);
+                batch.add(V3f(0.f), direction, infinite);
             }
-            rays.intersect(packet, hits);
-            leaksOfPackets += !hits[0] + !hits[1];
+            rays.intersect(batch, false, hits);
+            leaksOfPackets += (hits.triangle[0] < 0) + (hits.triangle[1] < 0);
         }
     EXPECT_EQ(leaks, 0u);
     EXPECT_EQ(leaksOfPackets, 0u);

@@ -38,17 +38,16 @@ TEST(Turntable, StandsOnTheFloorOfTheStage) {
     scene.surface = &ball;
     scene.turntable = true;
     const Stage stage(scene);
-    StagePoint point;
-    ASSERT_EQ(stage.intersect({1.2f, 0, 3}, {0, 0, -1}, false, point), StageHit::ground);
+    StagePoint point = stage.floorPoint({1.2f, 0, 3}, {0, 0, -1});
     const float table = point.position.z;
     EXPECT_NEAR(table, -1.f, 0.01f);
-    ASSERT_EQ(stage.intersect({3.f, 0, 3}, {0, 0, -1}, false, point), StageHit::ground);
+    point = stage.floorPoint({3.f, 0, 3}, {0, 0, -1});
     EXPECT_LT(point.position.z, table - 0.03f);
     // From the floor beside the table, light that comes low across it is blocked; from above it is not.
-    ASSERT_EQ(stage.intersect({1.7f, 0, 3}, {0, 0, -1}, false, point), StageHit::ground);
-    EXPECT_TRUE(stage.setBlocks(point, V3f(-1.f, 0.f, 0.02f).normalized(), infinite));
-    EXPECT_FALSE(stage.setBlocks(point, {0, 0, 1}, infinite));
-    EXPECT_FALSE(stage.setBlocks(point, V3f(-1.f, 0.f, 0.02f).normalized(), 0.05f)) << "a light nearer than the table";
+    point = stage.floorPoint({1.7f, 0, 3}, {0, 0, -1});
+    EXPECT_TRUE(stage.setBlocks(point.origin, V3f(-1.f, 0.f, 0.02f).normalized(), infinite));
+    EXPECT_FALSE(stage.setBlocks(point.origin, {0, 0, 1}, infinite));
+    EXPECT_FALSE(stage.setBlocks(point.origin, V3f(-1.f, 0.f, 0.02f).normalized(), 0.05f)) << "a light nearer than the table";
 }
 
 } // namespace

@@ -72,31 +72,32 @@ TEST(RayScene, raysThroughASharedEdgeTakeTheSmallerTriangle) {
     }
 }
 
-TEST(RayScene, packetsMeetWhatSingleRaysMeet) {
+TEST(RayScene, batchesMeetWhatSingleRaysMeet) {
     const SurfaceMesh cube = plainCube();
     const RayScene scene(cube.positions, cube.triangles);
     const KeyedRandom random(2, "packets", "test");
-    for (int round = 0; round < 200; ++round) {
-        RayScene::Packet packet;
-        packet.coherent = round % 2 == 0;
-        packet.count = 1 + round % RayScene::packetSize;
-        std::vector<V3f> origins, directions;
-        for (int i = 0; i < packet.count; ++i) {
-            const auto r = random.uniforms(std::uint32_t(round), i, 0, 0),
-                       s = random.uniforms(std::uint32_t(round), i, 1, 0);
-            origins.emplace_back(float(6 * r[0] - 3), float(6 * r[1] - 3), float(6 * r[2] - 3));
-            directions.emplace_back(float(s[0] - 0.5), float(s[1] - 0.5), float(s[2] - 0.5));
-            packet.set(i, origins.back(), directions.back(), i % 3 == 0 ? 2.f : 1e9f);
+    RayBatch batch;
+    HitBatch hits;
+    std::vector<char> blocked;
+    for (const int count : {1, 15, 16, 17, 300, 1000}) {
+        batch.count = 0;
+        for (int i = 0; i < count; ++i) {
+            const auto r = random.uniforms(std::uint32_t(count), i, 0, 0),
+                       s = random.uniforms(std::uint32_t(count), i, 1, 0);
+            batch.add(V3f(float(6 * r[0] - 3), float(6 * r[1] - 3), float(6 * r[2] - 3)),
+                      V3f(float(s[0] - 0.5), float(s[1] - 0.5), float(s[2] - 0.5)), i % 3 == 0 ? 2.f : 1e9f);
         }
-        std::optional<RayScene::Hit> hits[RayScene::packetSize];
-        scene.intersect(packet, hits);
-        for (int i = 0; i < packet.count; ++i) {
-            const auto one =
-                scene.intersect(origins[std::size_t(i)], directions[std::size_t(i)], 0.f, packet.farthest[i]);
-            ASSERT_EQ(bool(hits[i]), bool(one));
+        scene.intersect(batch, count % 2 == 0, hits);
+        scene.occluded(batch, blocked);
+        for (std::size_t i = 0; i < batch.count; ++i) {
+            const V3f origin = batch.origin[i], direction = batch.direction[i];
+            const auto one = scene.intersect(origin, direction, 0.f, batch.farthest[i]);
+            ASSERT_EQ(hits.triangle[i] >= 0, bool(one));
+            EXPECT_EQ(bool(blocked[i]), scene.occluded(origin, direction, 0.f, batch.farthest[i]));
             if (one) {
-                EXPECT_EQ(hits[i]->point.triangle, one->point.triangle);
-                EXPECT_NEAR(hits[i]->distance, one->distance, 1e-5f * one->distance);
+                EXPECT_EQ(hits.triangle[i], one->point.triangle);
+                EXPECT_NEAR(hits.distance[i], one->distance, 1e-5f * one->distance);
+                EXPECT_NEAR(hits.u[i], one->point.u, 1e-5f);
             }
         }
     }

@@ -217,6 +217,9 @@ void writePicture(const LayerVolume& volume, const Model& model, const StackOpti
     if (model.region && options.light == "studio")
         scene.background = Imath::V3f(0.18f);
     scene.material = [&](const SurfacePoint& point, const Imath::V3f&) { return shader.bsdf(point); };
+    scene.materials = [&](const HitBatch& hits, const std::vector<int>& from, std::size_t count, BsdfBatch& into) {
+        shader.bsdfs(hits, from, count, into);
+    };
     console.info(fmt::format("{} triangles set up in {:.2f} s", scene.surface->triangles.size(),
                              std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()));
     exposePicture(

@@ -1,0 +1,388 @@
+#include "render/path_batch.h"
+
+#include "render/path_kernels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace patina {
+
+using Imath::V2f;
+using Imath::V3f;
+
+namespace {
+
+constexpr float infinite = std::numeric_limits<float>::infinity();
+constexpr int mostSamples = 16; // of each pixel at once: a packet of camera rays
+constexpr std::size_t mostPaths = std::size_t(PathBatch::size) * PathBatch::size * mostSamples;
+
+// A tent over -1…1 by inverting its distribution.
+float tent(float u) {
+    return u < 0.5f ? std::sqrt(2.f * u) - 1.f : 1.f - std::sqrt(2.f - 2.f * u);
+}
+
+int groupEnd(int first, int last) {
+    const int end = first < mostSamples ? std::max(1, 2 * first) : (first / mostSamples + 1) * mostSamples;
+    return std::min(end, last);
+}
+
+float largest(const V3f& c) {
+    return std::max({c.x, c.y, c.z});
+}
+
+float powerHeuristic(float mine, float other) {
+    // By the ratio, so that squares of large densities do not overflow.
+    const float ratio = other / mine;
+    return 1.f / (1.f + ratio * ratio);
+}
+
+// How often the first surface samples the lights in the scene.
+int areaLooks(const Lights& lights) {
+    return lights.hasKey() ? 1 : 2;
+}
+
+Vectors numbersOf(VectorLanes& v) {
+    return {v.x.data(), v.y.data(), v.z.data()};
+}
+ConstVectors numbersOf(const VectorLanes& v) {
+    return {v.x.data(), v.y.data(), v.z.data()};
+}
+
+} // namespace
+
+void PathBatch::Wave::resize(std::size_t count) {
+    rays.reserve(count);
+    path.resize(count);
+    throughput.resize(count);
+    directionPdf.resize(count);
+    aims.resize(count);
+    normal.resize(count);
+    lightsDone.resize(count);
+}
+
+PathBatch::PathBatch(const PathSetting& setting, const Camera& camera, const KeyedRandom& random)
+    : setting_(setting), camera_(camera), lensDraw_(1 + setting.options.maxDepth * drawsPerVertex), sampler_(random) {
+    wave_.resize(mostPaths);
+    next_.resize(mostPaths);
+    hits_.resize(mostPaths);
+    at_.resize(mostPaths);
+    for (VectorLanes* lanes :
+         {&light_, &throughput_, &wo_, &wi_, &value_, &numbers_, &direction_, &radiance_, &arriving_})
+        lanes->resize(mostPaths);
+    for (auto* lanes : {&pdf_, &density_, &distance_, &most_, &weight_, &roulette_})
+        lanes->resize(mostPaths);
+    from_.resize(mostPaths);
+    path_.resize(mostPaths);
+    lightsDone_.resize(mostPaths);
+    aims_.resize(mostPaths);
+    sources_.resize(mostPaths);
+}
+
+std::uint64_t PathBatch::addSamples(Image& image, int left, int top, int first, int last) {
+    pixels_.clear();
+    for (int y = top; y < std::min(top + size, image.height); ++y)
+        for (int x = left; x < std::min(left + size, image.width); ++x)
+            pixels_.emplace_back(x, y);
+    sampler_.begin(pixels_);
+    rays_ = 0;
+    for (int from = first, to; from < last; from = to) {
+        to = groupEnd(from, last);
+        aim(from, to);
+        for (depth_ = 0; wave_.rays.count > 0; ++depth_) {
+            rays_ += wave_.rays.count;
+            setting_.stage.rays().intersect(wave_.rays, depth_ == 0, hits_);
+            arrive();
+            next_.rays.count = 0;
+            if (lanes_ > 0) {
+                lookAtLights();
+                goOn();
+            }
+            std::swap(wave_, next_);
+        }
+        std::size_t path = 0;
+        for (const Imath::V2i& pixel : pixels_) {
+            V3f sum = image.rgb(pixel.x, pixel.y);
+            for (int s = from; s < to; ++s, ++path)
+                if (const V3f light = light_[path]; std::isfinite(light.x + light.y + light.z))
+                    sum += light;
+            image.setRgb(pixel.x, pixel.y, sum);
+        }
+    }
+    return rays_;
+}
+
+void PathBatch::aim(int first, int last) {
+    sampler_.take(first, last);
+    const std::size_t count = sampler_.paths();
+    for (std::size_t i = 0; i < mostPaths; ++i)
+        wave_.path[i] = i < count ? int(i) : 0;
+    std::vector<float>&x = numbers_.x, &y = numbers_.y;
+    sampler_.draw(0, wave_.path, count, x.data(), y.data());
+    if (camera_.hasLens())
+        sampler_.draw(lensDraw_, wave_.path, count, wi_.x.data(), wi_.y.data());
+    const float width = float(setting_.options.width), height = float(setting_.options.height);
+    std::size_t i = 0;
+    for (const Imath::V2i& pixel : pixels_)
+        for (int s = first; s < last; ++s, ++i) {
+            x[i] = (float(pixel.x) + 0.5f + tent(x[i])) / width;
+            y[i] = (float(pixel.y) + 0.5f + tent(y[i])) / height;
+        }
+    camera_.rays(x.data(), y.data(), wi_.x.data(), wi_.y.data(), count, cameraRays_);
+    wave_.rays.count = 0;
+    for (std::size_t path = 0; path < count; ++path) {
+        const V3f origin = cameraRays_.origin(path), direction = cameraRays_.direction(path);
+        wave_.rays.add(origin, direction, setting_.stage.reach(origin, direction));
+        wave_.throughput.set(path, V3f(1.f));
+        light_.set(path, V3f(0.f));
+    }
+}
+
+void PathBatch::add(int path, const V3f& throughput, const V3f& light, bool indirect) {
+    const V3f arrives = throughput * light;
+    const float bound = setting_.options.indirectClamp, most = largest(arrives);
+    const V3f sum = light_[std::size_t(path)];
+    light_.set(std::size_t(path), sum + (indirect && bound > 0.f && most > bound ? arrives * (bound / most) : arrives));
+}
+
+void PathBatch::arrive() {
+    const Stage& stage = setting_.stage;
+    const bool lit = !setting_.lights.area().empty(), goesOn = depth_ < setting_.options.maxDepth;
+    floor_.clear();
+    std::size_t surfaces = 0;
+    for (std::size_t ray = 0; ray < wave_.rays.count; ++ray) {
+        if (hits_.triangle[ray] < 0) {
+            if (stage.hasFloor() && std::isfinite(wave_.rays.farthest[ray]))
+                floor_.push_back(ray);
+            else
+                leaveScene(ray);
+        } else if (depth_ == 0 || !stage.isClosed() ||
+                   !((hits_.geometricNormal[ray] ^ wave_.rays.direction[ray]) > 0.f)) {
+            from_[surfaces++] = int(ray);
+        } // else: the inside of a closed surface, to which only rounding leads
+    }
+    std::fill(from_.begin() + std::ptrdiff_t(surfaces), from_.begin() + std::ptrdiff_t(BsdfBatch::padded(surfaces)),
+              from_.front());
+    if (surfaces > 0 && (lit || goesOn)) {
+        stage.shade(wave_.rays, hits_, from_, surfaces, at_, wo_);
+        for (std::size_t i = 0; i < surfaces && lit; ++i) {
+            const auto ray = std::size_t(from_[i]);
+            meetAreaLights(ray, (at_.position[i] - wave_.rays.origin[ray]).length());
+        }
+    }
+    lanes_ = goesOn ? surfaces : 0;
+    bsdfs_.begin(lanes_ + floor_.size());
+    if (lanes_ > 0)
+        stage.materials(hits_, from_, lanes_, bsdfs_);
+    for (std::size_t i = 0; i < lanes_; ++i) {
+        const auto ray = std::size_t(from_[i]);
+        path_[i] = wave_.path[ray];
+        throughput_.set(i, wave_.throughput[ray]);
+        lightsDone_[i] = 0;
+    }
+    for (const std::size_t ray : floor_)
+        arriveAtFloor(ray);
+    std::fill(path_.begin() + std::ptrdiff_t(lanes_), path_.begin() + std::ptrdiff_t(BsdfBatch::padded(lanes_)), 0);
+    for (std::size_t i = 0; i < lanes_; ++i)
+        aims_[i] = setting_.lights.aim(at_.normal[i]);
+}
+
+void PathBatch::arriveAtFloor(std::size_t ray) {
+    const Stage& stage = setting_.stage;
+    const V3f direction = wave_.rays.direction[ray];
+    const StagePoint point = stage.floorPoint(wave_.rays.origin[ray], direction);
+    if (!setting_.lights.area().empty())
+        meetAreaLights(ray, (point.position - wave_.rays.origin[ray]).length());
+    V3f throughput = wave_.throughput[ray];
+    const float far = stage.backdropShare(point.position);
+    if (far > 0.f) {
+        add(wave_.path[ray], throughput, stage.backdrop() * far, depth_ > 1);
+        throughput *= 1.f - far;
+    }
+    if (!(far < 1.f) || depth_ >= setting_.options.maxDepth)
+        return;
+    const std::size_t lane = lanes_++;
+    from_[lane] = int(ray);
+    path_[lane] = wave_.path[ray];
+    throughput_.set(lane, throughput);
+    at_.set(lane, point);
+    wo_.set(lane, point.shading.toLocal(-direction));
+    bsdfs_.set(lane, stage.floorMaterial());
+    // Lights are sampled by radiance times cosine, which is all that a perfectly diffuse surface asks for: there, light
+    // met by chance would only add noise.
+    lightsDone_[lane] = 1;
+}
+
+void PathBatch::leaveScene(std::size_t ray) {
+    const V3f direction = wave_.rays.direction[ray];
+    const int path = wave_.path[ray];
+    if (depth_ == 0) {
+        light_.set(std::size_t(path), setting_.stage.seenByCamera(setting_.lights, direction));
+        return;
+    }
+    if (!setting_.lights.area().empty())
+        meetAreaLights(ray, infinite);
+    if (wave_.lightsDone[ray])
+        return;
+    V3f light(0.f);
+    const Lights& lights = setting_.lights;
+    for (const auto source : {Lights::environment, Lights::keyLight}) {
+        if (source == Lights::keyLight && lights.chance(source) == 0.f)
+            continue;
+        // As likely as the shadow ray of the surface that the path comes from was to go this way.
+        const float density =
+            lights.pdf(source, wave_.aims[ray], direction) * (depth_ == 1 ? 1.f : lights.chance(source));
+        light += lights.radiance(source, direction) * powerHeuristic(wave_.directionPdf[ray], density);
+    }
+    add(path, wave_.throughput[ray], light, depth_ > 1);
+}
+
+void PathBatch::meetAreaLights(std::size_t ray, float farthest) {
+    if (depth_ == 0 || wave_.lightsDone[ray])
+        return;
+    V3f light(0.f);
+    const AreaLightSet& area = setting_.lights.area();
+    const float share = depth_ == 1 ? float(areaLooks(setting_.lights)) : setting_.lights.chance(Lights::areaLights);
+    for (std::size_t k = 0; k < area.lights().size(); ++k)
+        if (const auto hit =
+                area.hit(k, wave_.rays.origin[ray], wave_.normal[ray], wave_.rays.direction[ray], farthest))
+            light += hit->radiance * powerHeuristic(wave_.directionPdf[ray], hit->pdf * share);
+    add(wave_.path[ray], wave_.throughput[ray], light, depth_ > 1);
+}
+
+void PathBatch::lookAtLights() {
+    bsdfs_.seenFrom(wo_);
+    shadows_.count = 0;
+    shadowPath_.clear();
+    const Lights& lights = setting_.lights;
+    const int draw = 1 + depth_ * drawsPerVertex;
+    const float keyChance = lights.chance(Lights::keyLight), areaChance = lights.chance(Lights::areaLights);
+    const auto lookAll = [&](int number, Lights::Source source) {
+        std::fill_n(sources_.begin(), lanes_, source);
+        look(number);
+    };
+    // At what the camera sees every light is sampled, further on only one of them.
+    if (depth_ == 0) {
+        int number = draw + 1;
+        lookAll(number++, Lights::environment);
+        if (keyChance > 0.f)
+            lookAll(number++, Lights::keyLight);
+        for (int i = 0; i < areaLooks(lights) && areaChance > 0.f; ++i)
+            lookAll(number++, Lights::areaLights);
+    } else if (keyChance > 0.f || areaChance > 0.f) {
+        sampler_.draw(draw, path_, lanes_, numbers_.x.data(), numbers_.y.data());
+        for (std::size_t i = 0; i < lanes_; ++i) {
+            const float choice = numbers_.x[i];
+            sources_[i] = choice < areaChance               ? Lights::areaLights
+                          : choice - areaChance < keyChance ? Lights::keyLight
+                                                            : Lights::environment;
+        }
+        look(draw + 1);
+    } else {
+        lookAll(draw + 1, Lights::environment);
+    }
+    setting_.stage.rays().occluded(shadows_, blocked_);
+    rays_ += shadows_.count;
+    for (std::size_t i = 0; i < shadows_.count; ++i)
+        if (const auto path = std::size_t(shadowPath_[i]); !blocked_[i])
+            light_.set(path, light_[path] + shadowLight_[i]);
+}
+
+void PathBatch::sampleLight(std::size_t lane) {
+    const Lights& lights = setting_.lights;
+    const Lights::Source source = sources_[lane];
+    const V2f u(numbers_.x[lane], numbers_.y[lane]);
+    // Lights in the scene are sampled so often at the first surface that their density counts so many times.
+    const bool area = source == Lights::areaLights;
+    const float share = depth_ > 0 ? lights.chance(source) : area ? float(areaLooks(lights)) : 1.f;
+    if (area) {
+        const AreaLightSet::Sample towards = lights.area().sample(at_.origin[lane], at_.normal[lane], u);
+        direction_.set(lane, towards.direction);
+        radiance_.set(lane, towards.radiance);
+        density_[lane] = towards.pdf * share;
+        distance_[lane] = towards.distance;
+    } else {
+        const Lights::Sample towards = lights.sample(source, aims_[lane], u);
+        direction_.set(lane, towards.direction);
+        radiance_.set(lane, towards.radiance);
+        density_[lane] = towards.pdf * share;
+        distance_[lane] = infinite;
+    }
+}
+
+void PathBatch::look(int draw) {
+    const Stage& stage = setting_.stage;
+    const std::size_t padded = BsdfBatch::padded(lanes_);
+    sampler_.draw(draw, path_, lanes_, numbers_.x.data(), numbers_.y.data());
+    const bool even = setting_.lights.isEven() &&
+                      std::all_of(sources_.begin(), sources_.begin() + std::ptrdiff_t(lanes_),
+                                  [](Lights::Source source) { return source == Lights::environment; }) &&
+                      (depth_ == 0 || setting_.lights.chance(Lights::environment) == 1.f);
+    if (even) {
+        const V3f sky = setting_.lights.radiance(Lights::environment, {0, 0, 1});
+        skyLanes({padded, numbersOf(std::as_const(at_.normal)), numbers_.x.data(), numbers_.y.data(),
+                  numbersOf(direction_), density_.data()});
+        std::fill_n(radiance_.x.begin(), padded, sky.x);
+        std::fill_n(radiance_.y.begin(), padded, sky.y);
+        std::fill_n(radiance_.z.begin(), padded, sky.z);
+        std::fill_n(distance_.begin(), padded, infinite);
+    } else {
+        for (std::size_t i = 0; i < lanes_; ++i)
+            sampleLight(i);
+    }
+    localLanes({padded, at_.frames(), numbersOf(std::as_const(direction_)), numbersOf(wi_)});
+    bsdfs_.evaluate(wi_, value_, pdf_);
+    arriveLanes({padded, numbersOf(std::as_const(wi_)), numbersOf(std::as_const(value_)),
+                 numbersOf(std::as_const(radiance_)), numbersOf(std::as_const(throughput_)), pdf_.data(),
+                 density_.data(), lightsDone_.data(), depth_ > 0 ? setting_.options.indirectClamp : 0.f,
+                 numbersOf(arriving_), most_.data()});
+    shadowLight_.resize(std::max(shadowLight_.size(), shadows_.count + lanes_));
+    for (std::size_t i = 0; i < lanes_; ++i) {
+        if (!(most_[i] > 0.f))
+            continue;
+        const V3f origin = at_.origin[i], direction = direction_[i];
+        if (stage.setBlocks(origin, direction, distance_[i]))
+            continue;
+        shadowLight_.set(shadows_.count, arriving_[i]);
+        shadowPath_.push_back(path_[i]);
+        shadows_.add(origin, direction, distance_[i] * 0.9999f); // a light may touch a surface
+    }
+}
+
+void PathBatch::goOn() {
+    const Stage& stage = setting_.stage;
+    const int draw = 1 + depth_ * drawsPerVertex;
+    // Numbers that come in pairs, of which the second is not always needed.
+    sampler_.draw(draw + 5, path_, lanes_, numbers_.z.data(), numbers_.y.data());
+    sampler_.draw(draw + 4, path_, lanes_, numbers_.x.data(), numbers_.y.data());
+    bsdfs_.sample(numbers_, wi_, value_, pdf_);
+    goOnLanes({BsdfBatch::padded(lanes_), at_.frames(), numbersOf(std::as_const(wi_)), numbersOf(std::as_const(value_)),
+               pdf_.data(), numbersOf(throughput_), numbersOf(direction_), most_.data(), weight_.data()});
+    // Roulette from the third surface on: paths that carry little end, the others make up for them.
+    const bool gambles = depth_ >= 2;
+    if (gambles)
+        sampler_.draw(draw + 6, path_, lanes_, roulette_.data(), numbers_.y.data());
+    for (std::size_t i = 0; i < lanes_; ++i) {
+        if (!(weight_[i] > 0.f))
+            continue;
+        V3f throughput = throughput_[i];
+        if (gambles) {
+            const float survival = std::min(0.95f, most_[i]);
+            if (roulette_[i] >= survival)
+                continue;
+            throughput /= survival;
+        }
+        const std::size_t to = next_.rays.count;
+        const V3f origin = at_.origin[i], direction = direction_[i];
+        next_.rays.add(origin, direction, stage.reach(origin, direction));
+        next_.path[to] = path_[i];
+        next_.throughput.set(to, throughput);
+        next_.directionPdf[to] = pdf_[i];
+        next_.aims[to] = aims_[i];
+        next_.normal.set(to, at_.normal[i]);
+        next_.lightsDone[to] = lightsDone_[i];
+    }
+}
+
+} // namespace patina
