@@ -27,16 +27,42 @@ float smoothStep(float from, float to, float x) {
     return t * t * (3.f - 2.f * t);
 }
 
-// Of a light's plane, -1…1 each, evenly over its shape. Discs by Shirley and Chiu's concentric map, which keeps
+// A place -1…1, as likely as a soft edge of this width is bright there: 1 - smoothStep(1 - edge, 1, |place|).
+float softPlace(float random, float edge) {
+    const float x = 2.f * random - 1.f;
+    const float inward = std::abs(x) * (1.f - 0.5f * edge);
+    if (inward <= 1.f - edge)
+        return std::copysign(inward, x);
+    // What lies further out, in edges: w³ - w⁴ / 2 at w from the rim. Newton's steps come down to it from above.
+    const float outward = std::max(0.f, 0.5f - (inward - (1.f - edge)) / edge);
+    float w = std::cbrt(2.f * outward);
+    for (int i = 0; i < 4 && w > 1e-4f; ++i)
+        w -= (w * w * w * (1.f - 0.5f * w) - outward) / (w * w * (3.f - 2.f * w));
+    return std::copysign(1.f - edge * w, x);
+}
+
+// Of a light's plane, -1…1 each, evenly over its shape but for a soft edge. Discs by Shirley and Chiu's concentric map, which keeps
 // neighbours neighbours.
-V2f pointOn(AreaLight::Shape shape, const V2f& random) {
+V2f pointOn(const AreaLight& light, const V2f& random) {
+    if (light.shape == AreaLight::Shape::rectangle && light.softEdge > 0.f)
+        return {softPlace(random.x, light.softEdge), softPlace(random.y, light.softEdge)};
     const V2f p(2.f * random.x - 1.f, 2.f * random.y - 1.f);
-    if (shape == AreaLight::Shape::rectangle || (p.x == 0.f && p.y == 0.f))
+    if (light.shape == AreaLight::Shape::rectangle || (p.x == 0.f && p.y == 0.f))
         return p;
     const bool wide = std::abs(p.x) > std::abs(p.y);
     const float r = wide ? p.x : p.y;
     const CirclePoint around = circlePoint(wide ? 0.125f * p.y / p.x : 0.25f - 0.125f * p.x / p.y);
     return {r * around.cosine, r * around.sine};
+}
+
+float meanLuminance(const AreaLight& light) {
+    if (light.shape == AreaLight::Shape::disc)
+        return luminance(light.radiance);
+    constexpr int looks = 16;
+    float sum = 0.f;
+    for (int i = 0; i < looks * looks; ++i)
+        sum += luminance(light.radianceAt((float(i % looks) + 0.5f) / looks, (float(i / looks) + 0.5f) / looks));
+    return sum / (looks * looks);
 }
 
 } // namespace
@@ -45,16 +71,19 @@ float AreaLight::area() const {
     return shape == Shape::disc ? pi * halfWidth * halfWidth : 4.f * halfWidth * halfHeight;
 }
 
+float AreaLight::edgeShare(float u, float v) const {
+    if (edge() == 0.f)
+        return 1.f;
+    return (1.f - smoothStep(1.f - softEdge, 1.f, std::abs(u))) * (1.f - smoothStep(1.f - softEdge, 1.f, std::abs(v)));
+}
+
 V3f AreaLight::radianceAt(float u, float v) const {
     if (shape == Shape::disc)
         return u * u + v * v <= 1.f ? radiance : V3f(0.f);
     u = std::abs(u), v = std::abs(v);
     if (u > 1.f || v > 1.f)
         return V3f(0.f);
-    float share = 1.f - dimming * std::min(u * u + v * v, 1.f);
-    if (softEdge > 0.f)
-        share *= (1.f - smoothStep(1.f - softEdge, 1.f, u)) * (1.f - smoothStep(1.f - softEdge, 1.f, v));
-    return radiance * share;
+    return radiance * ((1.f - dimming * std::min(u * u + v * v, 1.f)) * edgeShare(u, v));
 }
 
 AreaLightSet::AreaLightSet(std::vector<AreaLight> lights) : lights_(std::move(lights)) {
@@ -72,7 +101,7 @@ AreaLightSet::AreaLightSet(std::vector<AreaLight> lights) : lights_(std::move(li
         if (!(light.softEdge >= 0.f && light.softEdge <= 1.f && light.dimming >= 0.f && light.dimming <= 1.f))
             throw RunError("area light", "its edge and dimming must be 0 to 1");
         power_ += double(luminance(light.radiance)) * double(light.area());
-        beacons_.push_back({light.centre, light.frame.normal, luminance(light.radiance) * light.area(),
+        beacons_.push_back({light.centre, light.frame.normal, meanLuminance(light) * light.area(),
                             std::max(light.halfWidth, light.halfHeight)});
     }
 }
@@ -113,7 +142,7 @@ AreaLightSet::Sample AreaLightSet::sample(const V3f& position, const V3f& normal
         left -= mine;
     }
     const AreaLight& light = lights_[chosen];
-    const V2f p = pointOn(light.shape, random);
+    const V2f p = pointOn(light, random);
     const V3f towards = light.centre + light.frame.tangent * (p.x * light.halfWidth) +
                         light.frame.bitangent * (p.y * light.halfHeight) - position;
     Sample sample;
@@ -125,7 +154,8 @@ AreaLightSet::Sample AreaLightSet::sample(const V3f& position, const V3f& normal
     if (!(cosine > 1e-6f))
         return {};
     sample.radiance = light.radianceAt(p.x, p.y);
-    sample.pdf = weights[chosen] / total * sample.distance * sample.distance / (cosine * light.area());
+    sample.pdf = weights[chosen] / total * sample.distance * sample.distance / (cosine * light.area()) *
+                 (light.edgeShare(p.x, p.y) / light.meanEdgeShare());
     return sample;
 }
 
@@ -141,13 +171,15 @@ std::optional<AreaLightSet::Sample> AreaLightSet::hit(std::size_t k, const V3f& 
     if (!(sample.distance > 0.f && sample.distance < farthest))
         return {};
     const V3f place = position + direction * sample.distance - light.centre;
-    sample.radiance = light.radianceAt((place ^ light.frame.tangent) / light.halfWidth,
-                                       (place ^ light.frame.bitangent) / light.halfHeight);
+    const float u = (place ^ light.frame.tangent) / light.halfWidth;
+    const float v = (place ^ light.frame.bitangent) / light.halfHeight;
+    sample.radiance = light.radianceAt(u, v);
     if (luminance(sample.radiance) == 0.f)
         return {};
     std::array<float, mostLights> weights;
     const float total = weigh(position, normal, weights.data());
-    sample.pdf = weights[k] / total * sample.distance * sample.distance / (cosine * light.area());
+    sample.pdf = weights[k] / total * sample.distance * sample.distance / (cosine * light.area()) *
+                 (light.edgeShare(u, v) / light.meanEdgeShare());
     return sample;
 }
 
@@ -156,14 +188,16 @@ V3f AreaLightSet::irradiance(const V3f& position, const V3f& normal) const {
     Imath::V3d sum(0.0);
     for (const AreaLight& light : lights_)
         for (int i = 0; i < looks * looks; ++i) {
-            const V2f p = pointOn(light.shape, {(float(i % looks) + 0.5f) / looks, (float(i / looks) + 0.5f) / looks});
+            const V2f p = pointOn(light, {(float(i % looks) + 0.5f) / looks, (float(i / looks) + 0.5f) / looks});
+            const float density = light.edgeShare(p.x, p.y) / light.meanEdgeShare();
             const V3f towards = light.centre + light.frame.tangent * (p.x * light.halfWidth) +
                                 light.frame.bitangent * (p.y * light.halfHeight) - position;
             const float distance2 = towards.length2();
             const float cosines = std::max(0.f, towards ^ normal) * std::max(0.f, -(towards ^ light.frame.normal));
             if (cosines > 0.f)
                 sum += Imath::V3d(light.radianceAt(p.x, p.y)) *
-                       (double(cosines) * double(light.area()) / (double(distance2) * distance2 * looks * looks));
+                       (double(cosines) * double(light.area()) /
+                        (double(distance2) * distance2 * looks * looks * density));
         }
     return V3f(sum);
 }

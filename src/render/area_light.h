@@ -25,8 +25,15 @@ struct AreaLight {
     float dimming = 0.f;      ///< 0…1: how much darker a rectangle is towards its corners, as a lamp behind cloth
 
     float area() const;
+    /// Of a rectangle's light that its soft edge leaves, 0…1, at a point in halves of its size.
+    float edgeShare(float u, float v) const;
+    /// The same on average over its area.
+    float meanEdgeShare() const { return (1.f - 0.5f * edge()) * (1.f - 0.5f * edge()); }
     /// At a point of its plane, in halves of its size: (0, 0) the middle, (±1, ±1) the corners. 0 outside.
     Imath::V3f radianceAt(float u, float v) const;
+
+  private:
+    float edge() const { return shape == Shape::disc ? 0.f : softEdge; }
 };
 
 /// Several of them, sampled by importance. Immutable after construction; safe from any thread.
@@ -47,8 +54,8 @@ class AreaLightSet {
         Imath::V3f radiance{0.f};
         float pdf = 0.f; ///< per solid angle, the choice among the lights included; 0: nothing to see
     };
-    /// A point of one light, chosen by what each may do for a surface at this place with this normal, and then evenly
-    /// over its area.
+    /// A point of one light, chosen by what each may do for a surface at this place with this normal, and then as
+    /// densely as its soft edge leaves light there.
     Sample sample(const Imath::V3f& position, const Imath::V3f& normal, Imath::V2f random) const;
 
     /// Light k where a ray from `position` meets its front nearer than `farthest`, with the density with which sample()
@@ -65,7 +72,7 @@ class AreaLightSet {
     /// What choosing a light asks for.
     struct Beacon {
         Imath::V3f centre, normal;
-        float strength; ///< luminance times area
+        float strength; ///< luminance, on average over it, times area
         float size;     ///< half its longer side
     };
     /// Of choosing each light, in proportion; never 0 for one that can be seen from the place. \returns their sum

@@ -21,7 +21,8 @@ void BlockSampler::take(int first, int last) {
         }
 }
 
-void BlockSampler::draw(int draw, const std::vector<int>& path, std::size_t count, float* u, float* v) {
+void BlockSampler::draw(int draw, const std::vector<int>& path, std::size_t count, float* u, float* v, int part,
+                        int parts) {
     const auto number = std::size_t(draw);
     if (number >= seeds_.size()) {
         seeds_.resize(number + 1);
@@ -39,7 +40,14 @@ void BlockSampler::draw(int draw, const std::vector<int>& path, std::size_t coun
         }
         seedsMade_[number] = 1;
     }
-    drawLanes({(count + 15) / 16 * 16, path.data(), pixelOf_.data(), sampleOf_.data(), seeds.first.data(),
+    const std::uint32_t* samples = sampleOf_.data();
+    if (parts > 1) {
+        partOf_.resize(sampleOf_.size());
+        for (std::size_t i = 0; i < sampleOf_.size(); ++i)
+            partOf_[i] = sampleOf_[i] * std::uint32_t(parts) + std::uint32_t(part);
+        samples = partOf_.data();
+    }
+    drawLanes({(count + 15) / 16 * 16, path.data(), pixelOf_.data(), samples, seeds.first.data(),
                seeds.second.data(), seeds.third.data(), u, v});
 }
 

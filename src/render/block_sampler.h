@@ -24,7 +24,10 @@ class BlockSampler {
 
     /// Draw number `draw` of these paths, which has room up to the next multiple of 16 and valid numbers there; so have
     /// u and v.
-    void draw(int draw, const std::vector<int>& path, std::size_t count, float* u, float* v);
+    /// \param part  one of `parts` points of this draw: those of all samples together are spread as evenly as those of as
+    ///              many samples with one each
+    void draw(int draw, const std::vector<int>& path, std::size_t count, float* u, float* v, int part = 0,
+              int parts = 1);
 
   private:
     struct Seeds {
@@ -37,6 +40,7 @@ class BlockSampler {
     std::vector<char> seedsMade_; ///< for this block
     std::vector<std::int32_t> pixelOf_;
     std::vector<std::uint32_t> sampleOf_;
+    std::vector<std::uint32_t> partOf_; ///< the same of one part
 };
 
 } // namespace patina

@@ -80,12 +80,16 @@ PathBatch::PathBatch(const PathSetting& setting, const Camera& camera, const Key
     sources_.resize(mostPaths);
 }
 
-std::uint64_t PathBatch::addSamples(Image& image, int left, int top, int first, int last) {
+void PathBatch::addSamples(Image& image, int left, int top, int first, int last, Work& work) {
     pixels_.clear();
     for (int y = top; y < std::min(top + size, image.height); ++y)
         for (int x = left; x < std::min(left + size, image.width); ++x)
             pixels_.emplace_back(x, y);
     sampler_.begin(pixels_);
+    const RenderOptions& options = setting_.options;
+    const bool mayEndSooner = options.noise > 0.f && options.seconds == 0.0 && first == 0;
+    if (mayEndSooner)
+        noise_.begin(pixels_);
     rays_ = 0;
     for (int from = first, to; from < last; from = to) {
         to = groupEnd(from, last);
@@ -109,8 +113,14 @@ std::uint64_t PathBatch::addSamples(Image& image, int left, int top, int first, 
                     sum += light;
             image.setRgb(pixel.x, pixel.y, sum);
         }
+        work.samples += pixels_.size() * std::uint64_t(to - from);
+        if (mayEndSooner && noise_.after(to, image) < options.noise && to < last) {
+            for (const Imath::V2i& pixel : pixels_)
+                image.setRgb(pixel.x, pixel.y, image.rgb(pixel.x, pixel.y) * (float(last) / float(to)));
+            break;
+        }
     }
-    return rays_;
+    work.rays += rays_;
 }
 
 void PathBatch::aim(int first, int last) {
@@ -258,9 +268,9 @@ void PathBatch::lookAtLights() {
     const Lights& lights = setting_.lights;
     const int draw = 1 + depth_ * drawsPerVertex;
     const float keyChance = lights.chance(Lights::keyLight), areaChance = lights.chance(Lights::areaLights);
-    const auto lookAll = [&](int number, Lights::Source source) {
+    const auto lookAll = [&](int number, Lights::Source source, int part = 0, int parts = 1) {
         std::fill_n(sources_.begin(), lanes_, source);
-        look(number);
+        look(number, part, parts);
     };
     // At what the camera sees every light is sampled, further on only one of them.
     if (depth_ == 0) {
@@ -269,7 +279,7 @@ void PathBatch::lookAtLights() {
         if (keyChance > 0.f)
             lookAll(number++, Lights::keyLight);
         for (int i = 0; i < areaLooks(lights) && areaChance > 0.f; ++i)
-            lookAll(number++, Lights::areaLights);
+            lookAll(number, Lights::areaLights, i, areaLooks(lights));
     } else if (keyChance > 0.f || areaChance > 0.f) {
         sampler_.draw(draw, path_, lanes_, numbers_.x.data(), numbers_.y.data());
         for (std::size_t i = 0; i < lanes_; ++i) {
@@ -311,10 +321,10 @@ void PathBatch::sampleLight(std::size_t lane) {
     }
 }
 
-void PathBatch::look(int draw) {
+void PathBatch::look(int draw, int part, int parts) {
     const Stage& stage = setting_.stage;
     const std::size_t padded = BsdfBatch::padded(lanes_);
-    sampler_.draw(draw, path_, lanes_, numbers_.x.data(), numbers_.y.data());
+    sampler_.draw(draw, path_, lanes_, numbers_.x.data(), numbers_.y.data(), part, parts);
     const bool even = setting_.lights.isEven() &&
                       std::all_of(sources_.begin(), sources_.begin() + std::ptrdiff_t(lanes_),
                                   [](Lights::Source source) { return source == Lights::environment; }) &&

@@ -5,6 +5,7 @@
 #include "base/random.h"
 #include "base/vector_lanes.h"
 #include "optics/bsdf_batch.h"
+#include "render/block_noise.h"
 #include "render/block_sampler.h"
 #include "render/camera.h"
 #include "render/image.h"
@@ -31,13 +32,20 @@ class PathBatch {
   public:
     static constexpr int size = 8; ///< pixels each way
 
+    /// What a picture, or a part of it, cost.
+    struct Work {
+        std::uint64_t rays = 0;
+        std::uint64_t samples = 0; ///< of all pixels together
+    };
+
     PathBatch(const PathSetting& setting, const Camera& camera, const KeyedRandom& random);
 
     /// Adds samples first … last - 1 of each pixel of the block, which begins at (left, top), to its sum.
     /// Batches hold samples 2^k … 2^(k+1) - 1 of all pixels, or 16 from a multiple of 16 on: a picture's bits do not
     /// depend on where rounds of samples begin and end, if they do so there.
-    /// \returns rays traced
-    std::uint64_t addSamples(Image& image, int left, int top, int first, int last);
+    /// With `RenderOptions::noise`, where first is 0, it ends sooner; the sums are then as large as if it had not.
+    /// \param work  what it cost is added to
+    void addSamples(Image& image, int left, int top, int first, int last, Work& work);
 
   private:
     /// Draws that a surface takes: which light, three lights, two for a direction, roulette. Before them comes the
@@ -71,7 +79,8 @@ class PathBatch {
     /// Light sampled from each lane.
     void lookAtLights();
     /// One look from each lane, at its source. \param draw  number of the draw
-    void look(int draw);
+    /// \param part  of the `parts` looks that share this draw
+    void look(int draw, int part = 0, int parts = 1);
     void sampleLight(std::size_t lane);
     /// The next wave: a direction for each lane.
     void goOn();
@@ -81,6 +90,7 @@ class PathBatch {
     const int lensDraw_; ///< behind those of a path's surfaces
     BlockSampler sampler_;
     std::vector<Imath::V2i> pixels_;
+    BlockNoise noise_;
     VectorLanes light_; ///< of each path
     int depth_ = 0;
     std::uint64_t rays_ = 0;

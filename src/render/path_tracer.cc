@@ -35,6 +35,8 @@ void check(const RenderScene& scene, const RenderOptions& options) {
         throw RunError("picture", "the samples per pixel must be 1 to 1048576");
     if (options.maxDepth < 1 || options.maxDepth > 64)
         throw RunError("picture", "the depth of paths must be 1 to 64");
+    if (!(options.noise >= 0.f))
+        throw RunError("picture", "the noise allowed must be 0 or more");
     if (!(options.indirectClamp >= 0.f))
         throw RunError("picture", "the bound of indirect light must be 0 or more");
 }
@@ -54,7 +56,7 @@ Rendering render(const RenderScene& scene, const Camera& camera, const Lights& l
     result.image = Image(options.width, options.height);
     const int across = (options.width + tileSize - 1) / tileSize;
     const int down = (options.height + tileSize - 1) / tileSize;
-    std::atomic<std::uint64_t> rays{0};
+    std::atomic<std::uint64_t> rays{0}, taken{0};
     const std::thread::id caller = std::this_thread::get_id();
     const PathSetting setting{stage, lights, options};
     const auto takeRound = [&](int first, int last) {
@@ -64,11 +66,12 @@ Rendering render(const RenderScene& scene, const Camera& camera, const Lights& l
             for (int tile = range.begin(); tile != range.end(); ++tile) {
                 progress.checkpoint();
                 const int left = tile % across * tileSize, top = tile / across * tileSize;
-                std::uint64_t traced = 0;
+                PathBatch::Work work;
                 for (int y = top; y < std::min(top + tileSize, options.height); y += PathBatch::size)
                     for (int x = left; x < std::min(left + tileSize, options.width); x += PathBatch::size)
-                        traced += block.addSamples(result.image, x, y, first, last);
-                rays += traced;
+                        block.addSamples(result.image, x, y, first, last, work);
+                rays += work.rays;
+                taken += work.samples;
                 const int finished = ++done;
                 // Progress listens to one thread only: the caller's, which works on tiles too.
                 if (std::this_thread::get_id() == caller)
@@ -95,6 +98,7 @@ Rendering render(const RenderScene& scene, const Camera& camera, const Lights& l
     result.rays = rays;
     result.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
     result.processorSeconds = double(std::clock() - worked) / CLOCKS_PER_SEC;
+    result.samplesPerPixel = double(taken) / (double(options.width) * options.height);
     return result;
 }
 

@@ -59,6 +59,10 @@ Imath::V2f PixelSampler::next2() {
     return point(sample_, seedsOf(draw_++));
 }
 
+Imath::V2f PixelSampler::next2(int part, int parts) {
+    return point(sample_ * std::uint32_t(parts) + std::uint32_t(part), seedsOf(draw_++));
+}
+
 void PixelSampler::draw2(int draw, int first, int last, float* u, float* v) {
     const std::array<std::uint32_t, 4> seed = seedsOf(draw);
     for (int i = first; i < last; ++i) {

@@ -29,6 +29,9 @@ class PixelSampler {
     void draw2(int draw, int first, int last, float* u, float* v);
 
     Imath::V2f next2();
+    /// One of `parts` points of this draw: those of all samples together are spread as evenly as those of as many
+    /// samples with one each.
+    Imath::V2f next2(int part, int parts);
     float next1(); ///< the first of next2()
 
   private:

@@ -119,6 +119,26 @@ TEST(AreaLight, ASampleReportsWhatARayThatWayMeets) {
     EXPECT_GT(found, 1800); // the rest are on the soft edge's darkest part, or on the disc's rim
 }
 
+// From afar all points of a rectangle with a soft edge say the same: it is sampled as densely as it shines.
+TEST(AreaLight, ASoftEdgeAddsNoNoise) {
+    for (const float edge : {0.1f, 0.35f, 1.f}) {
+        AreaLight soft = rectangle(1.f, 2.f, {0, 0, 200.f});
+        soft.softEdge = edge;
+        const AreaLightSet set({soft});
+        const KeyedRandom random(2, "area", "edge");
+        PixelSampler sampler(random, 0, 0);
+        const float expected = 8.f * (1.f - 0.5f * edge) * (1.f - 0.5f * edge) / (200.f * 200.f);
+        for (std::uint32_t i = 0; i < 2000; ++i) {
+            sampler.startSample(i);
+            const auto s = set.sample(V3f(0.f), {0, 0, 1}, sampler.next2());
+            if (s.radiance.y > 1e-4f) {
+                EXPECT_NEAR(s.radiance.y * s.direction.z / s.pdf / expected, 1.f, 1e-3f) << edge;
+            }
+        }
+        EXPECT_NEAR(set.irradiance(V3f(0.f), {0, 0, 1}).y / expected, 1.f, 1e-3f) << edge;
+    }
+}
+
 TEST(AreaLight, RefusesImpossibleLight) {
     AreaLight light = disc(0.f, {0, 0, 1});
     EXPECT_THROW(AreaLightSet({light}), RunError);

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 namespace patina {
 namespace {
 
@@ -21,14 +23,15 @@ TEST(BlockSampler, drawsWhatEachPixelDraws) {
             for (int i = 0; i < 21; ++i)
                 path[std::size_t(i)] = (i * 8) % 21;
             std::vector<float> u(32), v(32);
-            for (const int draw : {3, 0, 11}) {
-                block.draw(draw, path, 21, u.data(), v.data());
+            for (const auto& [draw, part, parts] :
+                 {std::array{3, 0, 1}, {0, 0, 1}, {11, 0, 1}, {11, 1, 2}, {2, 0, 2}}) {
+                block.draw(draw, path, 21, u.data(), v.data(), part, parts);
                 for (std::size_t i = 0; i < 21; ++i) {
                     const Imath::V2i& pixel = pixels[std::size_t(path[i] / 7)];
                     PixelSampler one(random, pixel.x, pixel.y);
                     one.startSample(std::uint32_t(first + path[i] % 7));
                     one.seek(draw);
-                    EXPECT_EQ(Imath::V2f(u[i], v[i]), one.next2());
+                    EXPECT_EQ(Imath::V2f(u[i], v[i]), one.next2(part, parts));
                 }
             }
         }

@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "render/displace.h"
+#include "render/film.h"
 #include "test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -198,6 +199,46 @@ TEST(PathTracer, contactShadowOfABlackSphereIsTheFormFactor) {
     ASSERT_GT(count, 500);
     EXPECT_NEAR(error / count, 0.0, 0.002);
     EXPECT_LT(most, 0.05);
+}
+
+// A floor in the studio: smooth where nothing shadows it.
+TEST(PathTracer, samplesEndWhereTheNoiseDoes) {
+    const SurfaceMesh sphere = sphereMesh(40, 1.f, {0, 0, 1});
+    RenderScene scene = sceneOf(sphere, copper());
+    scene.ground = true;
+    const Camera camera = Camera::framed(sphere.positions, {}, 1.f);
+    const Lights lights = studioLights(UpAxis::z);
+    Progress quiet;
+    const auto take = [&](float noise, int samples, double seconds = 0.0) {
+        RenderOptions options = small(48, samples);
+        options.noise = noise;
+        options.seconds = seconds;
+        return render(scene, camera, lights, options, quiet);
+    };
+    const Rendering all = take(0.f, 64), some = take(6.f, 64), none = take(1e6f, 64);
+    EXPECT_EQ(all.samplesPerPixel, 64.0);
+    EXPECT_EQ(none.samplesPerPixel, 8.0);
+    EXPECT_EQ(take(1e-9f, 64).image.pixels, all.image.pixels) << "no noise is allowed, no sample is left out";
+    EXPECT_EQ(take(1e6f, 64, 1e6).image.pixels, all.image.pixels) << "time, not noise, is what ends it";
+    // With all blocks stopped after 8 it is the picture of 8 samples.
+    const Image eight = take(0.f, 8).image;
+    for (std::size_t i = 0; i < eight.pixels.size(); ++i)
+        ASSERT_NEAR(none.image.pixels[i], eight.pixels[i], 1e-5f * (1.f + eight.pixels[i]));
+    EXPECT_GT(some.samplesPerPixel, 8.0);
+    EXPECT_LT(some.samplesPerPixel, 48.0);
+    EXPECT_LT(some.rays, all.rays);
+    // Where samples were left out the two differ by the noise allowed (and that of the longer picture).
+    const Image few = displayImage(some.image, {ViewTransform::srgb, 0.f, false});
+    const Image many = displayImage(take(0.f, 512).image, {ViewTransform::srgb, 0.f, false});
+    double squares = 0.0;
+    int quieter = 0;
+    for (std::size_t i = 0; i < few.pixels.size(); ++i)
+        if (some.image.pixels[i] != all.image.pixels[i]) {
+            squares += std::pow(255.0 * (double(few.pixels[i]) - double(many.pixels[i])), 2);
+            ++quieter;
+        }
+    ASSERT_GT(quieter, 500);
+    EXPECT_LT(std::sqrt(squares / quieter), 6.0);
 }
 
 TEST(PathTracer, sameBitsOnAnyNumberOfThreads) {

@@ -28,6 +28,25 @@ TEST(PixelSampler, sixteenSamplesFillEveryElementaryInterval) {
     }
 }
 
+TEST(PixelSampler, theTwoPointsOfEightSamplesFillThemToo) {
+    const KeyedRandom random(3, "picture", "test");
+    for (int pixel = 0; pixel < 50; ++pixel) {
+        PixelSampler sampler(random, pixel, 7);
+        std::set<int> cells[5];
+        for (std::uint32_t s = 0; s < 8; ++s) {
+            sampler.startSample(s);
+            for (int part = 0; part < 2; ++part) {
+                sampler.seek(3);
+                const Imath::V2f p = sampler.next2(part, 2);
+                for (int split = 0; split <= 4; ++split)
+                    cells[split].insert(int(p.x * float(1 << split)) * 16 + int(p.y * float(1 << (4 - split))));
+            }
+        }
+        for (const auto& hit : cells)
+            EXPECT_EQ(hit.size(), 16u);
+    }
+}
+
 TEST(PixelSampler, pixelsAndDrawsAreIndependent) {
     const KeyedRandom random(3, "picture", "test");
     double mean = 0.0, acrossPixels = 0.0, acrossDraws = 0.0;

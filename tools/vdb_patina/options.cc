@@ -189,6 +189,13 @@ void addPictureOptions(CLI::App& app, Options& options, const PictureDefaults& d
         ->check(wholeNumberWithin(1, 65536))
         ->type_name("N")
         ->group(group);
+    app.add_option("--noise", options.noise,
+                   fmt::format("Fewer paths where the noise is below so many steps of 8 bits; 0: all everywhere "
+                               "(default {:g})",
+                               defaults.noise))
+        ->check(numberWithin(0.0, 255.0))
+        ->type_name("STEPS")
+        ->group(group);
     app.add_option("--azimuth", options.azimuth, "Where the camera stands, degrees around the model from its front")
         ->check(numberWithin(-360.0, 360.0))
         ->type_name("DEG")
@@ -272,6 +279,8 @@ void takeDefaults(const CLI::App& app, const PictureDefaults& defaults, Options&
         options.pictureSize = defaults.size;
     if (app.count("--samples") == 0)
         options.samples = defaults.samples;
+    if (app.count("--noise") == 0)
+        options.noise = defaults.noise;
 }
 
 void addRunOptions(CLI::App& app, Options& options) {

@@ -60,6 +60,7 @@ struct Options {
     std::string colourSpace = "rec709"; ///< of the maps
     int pictureSize = 640;
     int samples = 32;
+    double noise = 0.0; ///< a block of pixels that is less noisy (steps of 8 bits) takes no more samples; 0: it does
     std::optional<double> azimuth;
     std::optional<double> elevation;
     // … of `render` alone:
@@ -109,6 +110,7 @@ void addMapOptions(CLI::App& app, Options& options);
 /// What a command takes where nothing is given.
 struct PictureDefaults {
     int size = 640, samples = 32;
+    double noise = 0.0;
 };
 void addPictureOptions(CLI::App& app, Options& options, const PictureDefaults& defaults = {});
 /// Camera, light and files of `render`.

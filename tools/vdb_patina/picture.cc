@@ -145,14 +145,14 @@ void exposePicture(const RenderScene& scene, const View& view, const FeaturesAt&
     settings.height = view.height;
     settings.samples = options.samples;
     settings.seconds = options.seconds;
+    settings.noise = float(options.noise);
     settings.indirectClamp = float(options.clamp);
     const Lights lights =
         lightsOf(options, view.from.azimuthDegrees, scene.setting ? *scene.setting : scene.surface->bounds());
     const Rendering rendering = render(scene, view.camera, lights, settings, console);
-    console.info(fmt::format("{} rays traced in {:.2f} s ({:.2f} s of the processors)", rendering.rays,
-                             rendering.seconds, rendering.processorSeconds));
-    if (options.seconds > 0.0)
-        console.info(fmt::format("{} samples per pixel", rendering.samples));
+    console.info(fmt::format("{} rays traced in {:.2f} s ({:.2f} s of the processors), {:.3g} samples per pixel",
+                             rendering.rays, rendering.seconds, rendering.processorSeconds,
+                             rendering.samplesPerPixel));
 
     const ImageMetadata metadata{{"Software", "vdb-patina " PATINA_VERSION}, {"Description", description}};
     if (options.exr) {
