@@ -158,7 +158,9 @@ BandNodes bandNodes(const SurfaceMesh& surface, double voxelSize, double inside,
         return slabNodes(surface, voxelSize, behind + outside);
     BlockMarks marks(blockOf(Imath::V3d(box.min) - margin), blockOf(Imath::V3d(box.max) + margin));
     constexpr double step = 1.5; // voxels between samples: a leaf that is touched by less than that is rare
-    const int across = std::max(1, static_cast<int>(std::ceil((behind + outside) / step)));
+    // A sample stands for the voxel it lies in, whose centre must be in the band: half a voxel less at both ends.
+    const double most = outside - 0.5, least = 0.5 - behind;
+    const int across = std::max(1, static_cast<int>(std::ceil((most - least) / step)));
     for (const Imath::V3i& t : surface.triangles) {
         const Imath::V3d a(surface.positions[t[0]]), b(surface.positions[t[1]]), c(surface.positions[t[2]]);
         const Imath::V3d normal = (b - a).cross(c - a);
@@ -176,7 +178,7 @@ BandNodes bandNodes(const SurfaceMesh& surface, double voxelSize, double inside,
                 const Imath::V3d p = a + (b - a) * (double(i) / n) + (c - a) * (double(j) / n);
                 for (int k = 0; k <= across; ++k)
                     for (int side = 0; side < (surface.closed ? 1 : 5); ++side)
-                        marks.mark(blockOf(p + sides[side] + way * (outside - (behind + outside) * k / across)));
+                        marks.mark(blockOf(p + sides[side] + way * (most + (least - most) * k / across)));
             }
     }
     return marks.nodes();
