@@ -235,6 +235,17 @@ std::optional<RayScene::Hit> RayScene::intersect(const V3f& origin, const V3f& d
     return Hit{{static_cast<int>(hit.primID), hit.u, hit.v}, query.ray.tfar, {hit.Ng_x, hit.Ng_y, hit.Ng_z}};
 }
 
+std::optional<RayScene::FaceHit> RayScene::firstFace(const V3f& origin, const V3f& direction, float farthest) const {
+    const auto hit = intersect(origin, direction, 0.f, farthest);
+    if (!hit)
+        return std::nullopt;
+    const Corners& c = scene_->corners[hit->point.triangle];
+    const V3d ab(c.b - c.a), ac(c.c - c.a), bc(c.c - c.b);
+    const double longest = std::max({ab.length(), ac.length(), bc.length()});
+    const double width = longest > 0.0 ? ab.cross(ac).length() / longest : 0.0;
+    return FaceHit{hit->distance, hit->geometricNormal.normalized(), static_cast<float>(width)};
+}
+
 void RayScene::intersect(const RayBatch& rays, bool coherent, HitBatch& hits) const {
     hits.resize(std::max(hits.triangle.size(), rays.count));
     alignas(64) int valid[packetSize];

@@ -28,6 +28,13 @@ class RayScene {
     /// The first hit with nearest ≤ distance ≤ farthest, distances in lengths of `direction`. Watertight along edges.
     std::optional<Hit> intersect(const Imath::V3f& origin, const Imath::V3f& direction, float nearest = 0.f,
                                  float farthest = std::numeric_limits<float>::infinity()) const;
+    struct FaceHit {
+        float distance;    ///< lengths of the ray's direction
+        Imath::V3f normal; ///< unit, by the triangle's winding
+        float width;       ///< smallest height of the triangle, scene units
+    };
+    /// The same with what the first triangle is like.
+    std::optional<FaceHit> firstFace(const Imath::V3f& origin, const Imath::V3f& direction, float farthest) const;
     /// What each ray of a batch meets first, from its origin on. Traced in packets of `packetSize` that follow each
     /// other in the batch. The last bits of a hit may depend on the packet's company. \param coherent  the rays of a
     /// packet start near each other and go much the same way, as a camera's do: three times the speed for those, and

@@ -272,10 +272,9 @@ bool SurfaceBinding::occluded(const Imath::V3f& origin, const Imath::V3f& direct
     return scene_->occluded(origin, direction, 0.f, std::numeric_limits<float>::infinity());
 }
 
-std::optional<float> SurfaceBinding::firstHit(const Imath::V3f& origin, const Imath::V3f& direction,
-                                              float farthest) const {
-    const auto hit = scene_->intersect(origin, direction, 0.f, farthest);
-    return hit ? std::optional<float>(hit->distance) : std::nullopt;
+std::optional<RayScene::FaceHit> SurfaceBinding::firstHit(const Imath::V3f& origin, const Imath::V3f& direction,
+                                                          float farthest) const {
+    return scene_->firstFace(origin, direction, farthest);
 }
 
 } // namespace patina

@@ -46,8 +46,9 @@ class SurfaceBinding {
 
     /// Whether the model itself is in the way of a ray to infinity.
     bool occluded(const Imath::V3f& origin, const Imath::V3f& direction) const;
-    /// The distance at which a ray first meets the model, lengths of `direction`, if it does up to `farthest`.
-    std::optional<float> firstHit(const Imath::V3f& origin, const Imath::V3f& direction, float farthest) const;
+    /// Where a ray first meets the model, if it does up to `farthest` lengths of `direction`.
+    std::optional<RayScene::FaceHit> firstHit(const Imath::V3f& origin, const Imath::V3f& direction,
+                                              float farthest) const;
 
   private:
     bool findVisible(const LayerVolume& volume); ///< whether that is other than before

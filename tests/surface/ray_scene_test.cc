@@ -52,6 +52,12 @@ TEST(RayScene, hitsTheNearestFaceOutsideIn) {
     EXPECT_FALSE(scene.intersect(V3f(5, 0.25f, 0.5f), V3f(1, 0, 0)));
     EXPECT_TRUE(scene.occluded(V3f(5, 0, 0.5f), V3f(-1, 0, 0), 0.f, 4.5f));
     EXPECT_FALSE(scene.occluded(V3f(5, 0, 0.5f), V3f(-1, 0, 0), 0.f, 3.5f));
+    const auto face = scene.firstFace(V3f(5, 0.25f, 0.5f), V3f(-1, 0, 0), 10.f);
+    ASSERT_TRUE(face);
+    EXPECT_FLOAT_EQ(face->distance, 4.f);
+    EXPECT_LT((face->normal - V3f(1, 0, 0)).length(), 1e-6f);
+    EXPECT_NEAR(face->width, std::sqrt(2.0), 1e-6); // half of a square of side 2, over its diagonal
+    EXPECT_FALSE(scene.firstFace(V3f(5, 0.25f, 0.5f), V3f(-1, 0, 0), 3.9f));
     // nearest skips what lies before it: the far side, from within.
     const auto far = scene.intersect(V3f(5, 0.25f, 0.5f), V3f(-1, 0, 0), 4.5f);
     ASSERT_TRUE(far);

@@ -3,25 +3,12 @@
 
 #include "base/progress.h"
 #include "operators/fields/light_dome.h"
+#include "operators/fields/open_places.h"
 #include "operators/fields/surface_voxels.h"
-#include "surface/ray_scene.h"
 
-#include <functional>
-#include <optional>
+#include <vector>
 
 namespace patina {
-
-/// Whether something is in the way from an origin to infinity, scene units.
-using Occlusion = std::function<bool(const Imath::V3f& origin, const Imath::V3f& direction)>;
-
-/// What rays meet: the triangles of the surface, or of the whole model around it.
-struct Obstacles {
-    Occlusion occluded;
-    /// Distance of the first hit, in lengths of `direction`, if there is one up to `farthest`.
-    std::function<std::optional<float>(const Imath::V3f& origin, const Imath::V3f& direction, float farthest)> first;
-
-    static Obstacles of(const RayScene& scene); ///< which must outlive them
-};
 
 struct DomeGathering {
     int rays = 256;      ///< directions per place, 1 … 65536
@@ -36,9 +23,7 @@ struct DomeGathering {
 /// Directions are drawn once, by importance, for all places; 64 sets of them alternate from voxel to voxel, so that
 /// what is left of their error is fine grain and no edge of a shadow, and each voxel is averaged (by a plane)
 /// with its neighbours that face the same way. A ray whose direction lies behind the surface costs nothing. Rays leave
-/// from the triangles themselves, which one ray back along the normal finds under each foot: the voxels' surface is
-/// rounder than they are, and a start above it would see over what is no higher than that. The same on any number of
-/// threads. \throws RunError where the dome is dark; Interrupted
+/// from openPlaces(). The same on any number of threads. \throws RunError where the dome is dark; Interrupted
 std::vector<float> gatherDome(const SurfaceVoxels& surface, double voxelSize, const LightDome& dome,
                               const Compass& compass, const Obstacles& obstacles, const DomeGathering& options,
                               Progress& progress);

@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "base/hash.h"
 #include "operators/fields/accessibility.h"
+#include "operators/fields/crease_map.h"
 #include "operators/fields/field_grid.h"
 #include "operators/fields/wetness.h"
 #include "volume/band.h"
@@ -27,7 +28,7 @@ constexpr double creaseRadius = 0.02;
 
 constexpr const char* originKey = "patina_field_origin";
 /// To be raised with every change of what fields are: those of older files are then computed again.
-constexpr const char* fieldsVersion = "fields 2";
+constexpr const char* fieldsVersion = "fields 3";
 
 std::string lengthForName(double um) {
     if (um >= 1e6)
@@ -83,7 +84,9 @@ std::string ExposureRequest::fieldName(const std::string& word) const {
     return name;
 }
 
-std::string AccessibilityRequest::text() const { return fmt::format("{:a} {:a} {}", radius, radiusUm, global); }
+std::string AccessibilityRequest::text() const {
+    return fmt::format("{:a} {:a} {}", radius, radiusUm, global);
+}
 
 std::string ExposureRequest::text() const {
     const Imath::V3d towards = north.value_or(V3d(0.0));
@@ -118,7 +121,7 @@ std::string FieldStore::originOf(const std::string& name, const std::string& req
     return hash.text();
 }
 
-const ThicknessMapPtr* FieldStore::find(const std::string& name, const std::string& request) {
+const ThicknessMapPtr* FieldStore::find(const std::string& name, const std::string& request, Reading reading) {
     const Surface& surface = presentSurface();
     auto found = kept_.find(name);
     if (found == kept_.end()) {
@@ -129,17 +132,17 @@ const ThicknessMapPtr* FieldStore::find(const std::string& name, const std::stri
         const auto origin = stored->second->getMetadata<openvdb::StringMetadata>(originKey);
         if (!origin || origin->value().empty() || origin->value() != originOf(name, request))
             return nullptr;
-        found = kept_.emplace(name, Kept{surface.hash, request, makeFieldMap(*scene_.volume, name)}).first;
+        found = kept_.emplace(name, Kept{surface.hash, request, mapOf(name, reading)}).first;
     }
     const Kept& kept = found->second;
     return kept.surface == surface.hash && kept.request == request ? &kept.map : nullptr;
 }
 
-ThicknessMapPtr FieldStore::keep(const std::string& name, const std::string& request,
-                                 const std::vector<float>& values) {
+ThicknessMapPtr FieldStore::keep(const std::string& name, const std::string& request, const std::vector<float>& values,
+                                 Reading reading) {
     storeField(*scene_.volume, name, surface_.layer, surface_.voxels, values);
     scene_.volume->grids().fields.at(name)->insertMeta(originKey, openvdb::StringMetadata(originOf(name, request)));
-    kept_[name] = {surface_.hash, request, makeFieldMap(*scene_.volume, name)};
+    kept_[name] = {surface_.hash, request, mapOf(name, reading)};
     return kept_[name].map;
 }
 
@@ -153,17 +156,33 @@ std::vector<float> FieldStore::accessibilityValues(const AccessibilityRequest& r
     return values;
 }
 
+std::optional<Obstacles> FieldStore::modelObstacles() const {
+    if (scene_.whole)
+        return Obstacles::of(*scene_.whole);
+    if (surface_.layer == 0 && !scene_.volume->grids().metal)
+        return Obstacles{[this](const V3f& o, const V3f& d) { return scene_.binding->occluded(o, d); },
+                         [this](const V3f& o, const V3f& d, float far) { return scene_.binding->firstHit(o, d, far); }};
+    return std::nullopt;
+}
+
+ThicknessMapPtr FieldStore::mapOf(const std::string& name, Reading reading) const {
+    ThicknessMapPtr map = makeFieldMap(*scene_.volume, name);
+    // Triangles of a layered surface are as small as voxels: none is wide enough to have sides.
+    const auto model = reading == Reading::bySides ? modelObstacles() : std::nullopt;
+    if (!model)
+        return map;
+    const double voxelSize = scene_.volume->scale().voxelSize;
+    return readBySides(std::move(map), surface_.voxels, openPlaces(surface_.voxels, voxelSize, *model), voxelSize);
+}
+
 std::vector<float> FieldStore::gather(const LightDome& dome, const Compass& compass, const DomeGathering& options,
                                       Progress& progress) {
     const double voxelSize = scene_.volume->scale().voxelSize;
     const auto run = [&](const Obstacles& obstacles) {
         return gatherDome(surface_.voxels, voxelSize, dome, compass, obstacles, options, progress);
     };
-    if (scene_.whole)
-        return run(Obstacles::of(*scene_.whole));
-    if (surface_.layer == 0 && !scene_.volume->grids().metal)
-        return run({[&](const V3f& o, const V3f& d) { return scene_.binding->occluded(o, d); },
-                    [&](const V3f& o, const V3f& d, float far) { return scene_.binding->firstHit(o, d, far); }});
+    if (const auto model = modelObstacles())
+        return run(*model);
     const SurfaceMesh mesh = interfaceMesh(*scene_.volume, surface_.layer);
     const RayScene present(mesh.positions, mesh.triangles);
     return run(Obstacles::of(present));
@@ -194,9 +213,9 @@ ThicknessMapPtr FieldStore::accessibility(const AccessibilityRequest& request, P
 
 ThicknessMapPtr FieldStore::exposure(const ExposureRequest& request, Progress& progress) {
     const std::string name = request.fieldName();
-    if (const auto* kept = find(name, request.text()))
+    if (const auto* kept = find(name, request.text(), Reading::bySides))
         return *kept;
-    return keep(name, request.text(), exposureValues(request, progress));
+    return keep(name, request.text(), exposureValues(request, progress), Reading::bySides);
 }
 
 ThicknessMapPtr FieldStore::wetness(const ExposureRequest& request, Progress& progress) {

@@ -77,8 +77,13 @@ class FieldStore {
     };
 
     const Surface& presentSurface();
-    const ThicknessMapPtr* find(const std::string& name, const std::string& request);
-    ThicknessMapPtr keep(const std::string& name, const std::string& request, const std::vector<float>& values);
+    enum class Reading { lattice, bySides }; ///< trilinear; or that and readBySides()
+    const ThicknessMapPtr* find(const std::string& name, const std::string& request,
+                                Reading reading = Reading::lattice);
+    ThicknessMapPtr keep(const std::string& name, const std::string& request, const std::vector<float>& values,
+                         Reading reading = Reading::lattice);
+    ThicknessMapPtr mapOf(const std::string& name, Reading reading) const;
+    std::optional<Obstacles> modelObstacles() const; ///< not where a layered surface must be made a mesh
     std::string originOf(const std::string& name, const std::string& request) const;
     std::vector<float> accessibilityValues(const AccessibilityRequest& request, Progress& progress);
     std::vector<float> exposureValues(const ExposureRequest& request, Progress& progress);

@@ -9,11 +9,11 @@ namespace patina {
 
 /// Where on the model a map is asked for its value.
 struct MapPoint {
-    Imath::V3d position; ///< on the surface, model space, scene units
-    Imath::V3d normal;   ///< outward, unit
-    int triangle = -1;   ///< of the SurfaceMesh
-    float u = 0.f;       ///< barycentric weight of the second corner
-    float v = 0.f;       ///< barycentric weight of the third corner
+    Imath::V3d position;    ///< on the surface, model space, scene units
+    Imath::V3d normal{0.0}; ///< outward, unit; 0 where it is not known
+    int triangle = -1;      ///< of the SurfaceMesh
+    float u = 0.f;          ///< barycentric weight of the second corner
+    float v = 0.f;          ///< barycentric weight of the third corner
 };
 
 /// A pure function of the surface point; value() is called from many threads at once.

@@ -140,6 +140,41 @@ TEST(FieldStore, ReadsWhatCameWithTheVolumeAsLongAsAllItWasMadeFromIsTheSame) {
     EXPECT_GT(Stand::at(another({0, 1, 0}).exposure(request, progress), top), 0.5);
 }
 
+// A cell at an edge holds values of both faces; each is read from its own, whether computed or come with the volume.
+TEST(FieldStore, ReadsTheFacesOfAnEdgeEachForItself) {
+    Stand stand(block(24.f, 24.f, 24.f));
+    ExposureRequest request;
+    request.light.sky = uniformSky;
+    request.light.sun = false;
+    request.rays = 1024;
+    Progress progress;
+    const ThicknessMapPtr computed = stand.store->exposure(request, progress);
+    FieldStore::Scene scene;
+    scene.volume = stand.piece->volume.get();
+    scene.binding = stand.piece->binding.get();
+    scene.lowest = stand.piece->surface.bounds().min.y;
+    scene.highest = stand.piece->surface.bounds().max.y;
+    FieldStore later(scene);
+    const ThicknessMapPtr read = later.exposure(request, progress);
+    const V3d up(0, 1, 0), out(1, 0, 0);
+    for (double away = 0.1; away < 6.0; away += 0.3)
+        for (const double z : {-3.3, 0.2, 4.1}) {
+            MapPoint top, side;
+            top.position = {12.0 - away, 24.0, z};
+            top.normal = up;
+            side.position = {12.0, 24.0 - away, z};
+            side.normal = out;
+            EXPECT_NEAR(computed->value(top), 1.0, 0.01) << away;
+            EXPECT_NEAR(computed->value(side), 0.5, 0.01) << away;
+            EXPECT_EQ(read->value(top), computed->value(top)) << away;
+            EXPECT_EQ(read->value(side), computed->value(side)) << away;
+        }
+    // Asked without a normal, an edge is neither face.
+    const double between = Stand::at(computed, {12.0, 24.0, 0.2});
+    EXPECT_GT(between, 0.55);
+    EXPECT_LT(between, 0.95);
+}
+
 TEST(FieldStore, NamesFieldsAfterTheirArguments) {
     AccessibilityRequest access;
     access.radiusUm = 3000.0;
