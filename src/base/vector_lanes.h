@@ -26,4 +26,18 @@ struct VectorLanes {
     }
 };
 
+/// The same arrays as loops over lanes take them.
+struct ConstVectors {
+    const float *x, *y, *z;
+};
+struct Vectors {
+    float *x, *y, *z;
+};
+inline Vectors numbersOf(VectorLanes& v) {
+    return {v.x.data(), v.y.data(), v.z.data()};
+}
+inline ConstVectors numbersOf(const VectorLanes& v) {
+    return {v.x.data(), v.y.data(), v.z.data()};
+}
+
 } // namespace patina

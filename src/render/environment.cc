@@ -4,6 +4,21 @@
 
 namespace patina {
 
+void Environment::radiance(const RadianceLanes& lanes) const {
+    for (std::size_t i = 0; i < lanes.count; ++i) {
+        const Imath::V3f light = radiance({lanes.direction.x[i], lanes.direction.y[i], lanes.direction.z[i]});
+        lanes.radiance.x[i] = light.x;
+        lanes.radiance.y[i] = light.y;
+        lanes.radiance.z[i] = light.z;
+    }
+}
+
+void UniformEnvironment::radiance(const RadianceLanes& lanes) const {
+    std::fill_n(lanes.radiance.x, lanes.count, radiance_.x);
+    std::fill_n(lanes.radiance.y, lanes.count, radiance_.y);
+    std::fill_n(lanes.radiance.z, lanes.count, radiance_.z);
+}
+
 namespace {
 
 float smoothStep(float from, float to, float x) {

@@ -1,13 +1,23 @@
 #pragma once
 // Light from far away, as radiance over directions: the base of every sky, set and map.
 
+#include "base/vector_lanes.h"
 #include "render/frame.h"
 
 #include <Imath/ImathVec.h>
 
+#include <cstddef>
 #include <vector>
 
 namespace patina {
+
+/// Radiance from many directions at once. Arrays have room up to the next multiple of 16 of `count`; what lies behind
+/// `count` is written but has no meaning.
+struct RadianceLanes {
+    std::size_t count;
+    ConstVectors direction; ///< unit
+    Vectors radiance;
+};
 
 /// Radiance arriving from infinitely far, linear Rec.709. Immutable; safe from any thread.
 class Environment {
@@ -15,6 +25,8 @@ class Environment {
     virtual ~Environment() = default;
     /// Radiance from a unit direction (pointing away from the scene), finite and not negative.
     virtual Imath::V3f radiance(const Imath::V3f& direction) const = 0;
+    /// The same of many directions, to the bit.
+    virtual void radiance(const RadianceLanes& lanes) const;
     /// Whether radiance() is the same in all directions: such light needs no table.
     virtual bool isUniform() const { return false; }
     /// How many looks each way tell what a cell of 1.9 degrees holds, for the tables it is sampled by.
@@ -26,6 +38,7 @@ class UniformEnvironment final : public Environment {
   public:
     explicit UniformEnvironment(const Imath::V3f& radiance) : radiance_(radiance) {}
     Imath::V3f radiance(const Imath::V3f&) const override { return radiance_; }
+    void radiance(const RadianceLanes& lanes) const override;
     bool isUniform() const override { return true; }
 
   private:
@@ -49,6 +62,7 @@ class StudioEnvironment final : public Environment {
     /// Without `boxes` it is the dome alone, for lights that stand in the scene (lights.h, studioSet).
     explicit StudioEnvironment(UpAxis up, float azimuthDegrees = 0.f, bool boxes = true);
     static const std::vector<SoftBox>& softBoxes();
+    using Environment::radiance;
     Imath::V3f radiance(const Imath::V3f& direction) const override;
 
   private:

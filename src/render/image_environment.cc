@@ -1,6 +1,7 @@
 #include "render/image_environment.h"
 
 #include "base/errors.h"
+#include "base/lane_kernel.h"
 #include "base/turns.h"
 
 #include <OpenImageIO/imageio.h>
@@ -16,6 +17,59 @@ namespace {
 float decodedSrgb(float c) {
     return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
 }
+
+PATINA_LANE_BODY int within(int i, int last) {
+    const int least = i < 0 ? 0 : i;
+    return least < last ? least : last;
+}
+
+struct Panorama {
+    const float* pixels;
+    int width, height, channels;
+    Frame set;
+};
+
+PATINA_LANE_BODY void look(const Panorama& panorama, float dx, float dy, float dz, float& red, float& green,
+                           float& blue) {
+    const Frame& set = panorama.set;
+    const float right = dx * set.tangent.x + dy * set.tangent.y + dz * set.tangent.z;
+    const float ahead = dx * set.bitangent.x + dy * set.bitangent.y + dz * set.bitangent.z;
+    const float up = dx * set.normal.x + dy * set.normal.y + dz * set.normal.z;
+    // Ahead, away from the viewer, is +bitangent; to the viewer's right +tangent.
+    const int width = panorama.width, last = panorama.height - 1, channels = panorama.channels;
+    const float x = (turnOf(ahead, right) + 0.5f) * float(width) + 0.5f;
+    const float y = halfTurnsOfCosine(up) * float(panorama.height) + 0.5f;
+    // Counted from -1: a turn around, and half a pixel. The poles have no other side here.
+    const int left = int(x) - 1, top = int(y) - 1;
+    const float fx = x - float(left + 1), fy = y - float(top + 1), gx = 1.f - fx, gy = 1.f - fy;
+    const int column = left < 0 ? width - 1 : within(left, width - 1);
+    const int next = column + 1 < width ? column + 1 : 0;
+    const int upper = within(top, last) * width, lower = within(top + 1, last) * width;
+    const float* pixels = panorama.pixels;
+    const int a = (upper + column) * channels, b = (upper + next) * channels, c = (lower + column) * channels,
+              d = (lower + next) * channels;
+    red = (pixels[a] * gx + pixels[b] * fx) * gy + (pixels[c] * gx + pixels[d] * fx) * fy;
+    green = (pixels[a + 1] * gx + pixels[b + 1] * fx) * gy + (pixels[c + 1] * gx + pixels[d + 1] * fx) * fy;
+    blue = (pixels[a + 2] * gx + pixels[b + 2] * fx) * gy + (pixels[c + 2] * gx + pixels[d + 2] * fx) * fy;
+}
+
+struct PanoramaLanes {
+    const RadianceLanes& lanes;
+    const Panorama panorama;
+};
+
+PATINA_LANE_BODY void panoramaLanesBody(const PanoramaLanes& looks) {
+    const RadianceLanes& lanes = looks.lanes;
+    const Panorama panorama = looks.panorama;
+    const ConstVectors direction = lanes.direction;
+    const Vectors radiance = lanes.radiance;
+    const std::size_t count = (lanes.count + 15) / 16 * 16;
+    PATINA_LANES
+    for (std::size_t i = 0; i < count; ++i)
+        look(panorama, direction.x[i], direction.y[i], direction.z[i], radiance.x[i], radiance.y[i], radiance.z[i]);
+}
+
+PATINA_LANE_KERNEL(panoramaLanes, PanoramaLanes)
 
 } // namespace
 
@@ -45,20 +99,14 @@ int ImageEnvironment::looksPerCell() const {
 }
 
 Imath::V3f ImageEnvironment::radiance(const Imath::V3f& direction) const {
-    const Imath::V3f d = set_.toLocal(direction);
-    // Ahead, away from the viewer, is +bitangent; to the viewer's right +tangent.
-    const float x = (turnOf(d.y, d.x) + 0.5f) * float(panorama_.width) + 0.5f;
-    const float y = halfTurnsOfCosine(d.z) * float(panorama_.height) + 0.5f;
-    // Counted from -1: a turn around, and half a pixel. The poles have no other side here.
-    const int width = panorama_.width, last = panorama_.height - 1;
-    const int left = int(x) - 1, top = int(y) - 1;
-    const float fx = x - float(left + 1), fy = y - float(top + 1);
-    const int column = left < 0 ? width - 1 : std::min(left, width - 1);
-    const int next = column + 1 < width ? column + 1 : 0;
-    const int upper = std::max(top, 0), lower = std::min(top + 1, last);
-    const Imath::V3f above = panorama_.rgb(column, upper) * (1.f - fx) + panorama_.rgb(next, upper) * fx;
-    const Imath::V3f below = panorama_.rgb(column, lower) * (1.f - fx) + panorama_.rgb(next, lower) * fx;
-    return above * (1.f - fy) + below * fy;
+    Imath::V3f result;
+    look({panorama_.pixels.data(), panorama_.width, panorama_.height, panorama_.channels, set_}, direction.x,
+         direction.y, direction.z, result.x, result.y, result.z);
+    return result;
+}
+
+void ImageEnvironment::radiance(const RadianceLanes& lanes) const {
+    panoramaLanes({lanes, {panorama_.pixels.data(), panorama_.width, panorama_.height, panorama_.channels, set_}});
 }
 
 Image readPanorama(const std::filesystem::path& path) {

@@ -17,6 +17,7 @@ class ImageEnvironment final : public Environment {
     /// \throws RunError where the picture is not twice as wide as high or some radiance is negative or not finite
     ImageEnvironment(Image panorama, UpAxis up, float turnDegrees = 0.f, float strength = 1.f);
     Imath::V3f radiance(const Imath::V3f& direction) const override;
+    void radiance(const RadianceLanes& lanes) const override;
     int looksPerCell() const override;
 
   private:

@@ -19,45 +19,6 @@ bool usable(const Imath::V3f& c) {
     return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z) && c.x >= 0.f && c.y >= 0.f && c.z >= 0.f;
 }
 
-// Appends the running sums of `count` weights, over their total.
-void appendCumulative(std::vector<float>& table, std::vector<double>::const_iterator weights, int count) {
-    double total = 0.0;
-    for (int i = 0; i < count; ++i)
-        total += weights[i];
-    double running = 0.0;
-    for (int i = 0; i + 1 < count; ++i)
-        table.push_back(total > 0.0 ? float((running += weights[i]) / total) : 1.f);
-    table.push_back(1.f);
-}
-
-// The first entry above j / steps, for each j.
-void appendGuide(std::vector<std::uint8_t>& guide, const float* table, int count, int steps) {
-    int entry = 0;
-    for (int j = 0; j < steps; ++j) {
-        while (entry + 1 < count && table[entry] <= float(j) / float(steps))
-            ++entry;
-        guide.push_back(std::uint8_t(entry));
-    }
-}
-
-struct Choice {
-    int entry;
-    float place;  // of the number within the entry, 0…1
-    float chance; // of the entry
-};
-
-// The entry of a cumulative table that a number in [0, 1) falls into.
-Choice choose(const float* table, int count, const std::uint8_t* guide, int steps, float u) {
-    int entry = guide[std::min(int(u * float(steps)), steps - 1)];
-    while (entry > 0 && table[entry - 1] > u)
-        --entry;
-    while (entry + 1 < count && table[entry] <= u)
-        ++entry;
-    const float below = entry > 0 ? table[entry - 1] : 0.f;
-    const float width = table[entry] - below;
-    return {entry, width > 0.f ? std::clamp((u - below) / width, 0.f, 0.999999f) : 0.5f, width};
-}
-
 } // namespace
 
 Imath::V3f KeyLight::radiance() const {
@@ -65,16 +26,9 @@ Imath::V3f KeyLight::radiance() const {
     return irradiance / (pi * s * s);
 }
 
-// A direction of the upright frame from its place in a cell, both places 0…1.
-Imath::V3f Lights::cellDirection(int row, int column, float down, float across) const {
-    const float z = 2.f * (float(row) + down) / rows - 1.f;
-    const CirclePoint around = circlePoint((float(column) + across) / columns);
-    const float r = std::sqrt(std::max(0.f, 1.f - z * z));
-    return {r * around.cosine, r * around.sine, z};
-}
-
 Lights::Lights(std::shared_ptr<const Environment> environment, std::optional<KeyLight> key, UpAxis up, bool skyOnly)
     : environment_(std::move(environment)), key_(key), frame_(uprightFrame(up)) {
+    constexpr int rows = LightTables::rows, columns = LightTables::columns;
     double power = 0.0;
     std::vector<float> luminances;
     const int looks = environment_->looksPerCell(); // into each cell, each way
@@ -82,8 +36,8 @@ Lights::Lights(std::shared_ptr<const Environment> environment, std::optional<Key
         for (int column = 0; column < columns; ++column) {
             float sum = 0.f;
             for (int i = 0; i < looks * looks; ++i) {
-                const Imath::V3f light = environment_->radiance(frame_.toWorld(
-                    cellDirection(row, column, (float(i / looks) + 0.5f) / looks, (float(i % looks) + 0.5f) / looks)));
+                const Imath::V3f light = environment_->radiance(frame_.toWorld(LightTables::cellDirection(
+                    row, column, (float(i / looks) + 0.5f) / looks, (float(i % looks) + 0.5f) / looks)));
                 if (!usable(light))
                     throw RunError("environment", "its radiance is negative or not finite in some direction");
                 sum += luminance(light);
@@ -96,13 +50,8 @@ Lights::Lights(std::shared_ptr<const Environment> environment, std::optional<Key
     const float least = power > 0.0 ? float(0.01 * power / cells) : 1.f;
     for (float& l : luminances)
         l = std::max(l, least);
-    const bool byCosine = environment_->isUniform() && !skyOnly;
-    for (int i = 0; i < normalsDown * normalsAround && !byCosine; ++i) {
-        const float theta = pi * float(i / normalsAround) / (normalsDown - 1);
-        const float phi = 2.f * pi * float(i % normalsAround) / normalsAround;
-        tables_.push_back(makeTable(
-            luminances, {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)}, skyOnly));
-    }
+    if (skyOnly || !environment_->isUniform())
+        tables_ = LightTables(luminances, frame_, skyOnly);
 
     environmentPower_ = power / cells * M_PI;
     if (key_) {
@@ -137,50 +86,20 @@ void Lights::setAreaLights(AreaLightSet lights, float distance) {
     areaChance_ = area_.empty() ? 0.f : others > 0.0 ? float(std::clamp(mine / (mine + others), 0.1, 0.9)) : 1.f;
 }
 
-Lights::Table Lights::makeTable(const std::vector<float>& luminances, const Imath::V3f& normal, bool skyOnly) {
-    Table table;
-    std::vector<double> rowWeights;
-    std::vector<double> weights(columns);
-    for (int row = 0; row < rows; ++row) {
-        const float z = 2.f * (float(row) + 0.5f) / rows - 1.f;
-        const float r = std::sqrt(1.f - z * z);
-        double sum = 0.0;
-        for (int column = 0; column < columns; ++column) {
-            const float phi = 2.f * pi * (float(column) + 0.5f) / columns;
-            const Imath::V3f direction(r * std::cos(phi), r * std::sin(phi), z);
-            // The true normal may be 14 degrees off the table's: what the table takes to be below it keeps a little.
-            const double cosine = std::max(direction ^ normal, 0.f) + 0.04f;
-            double& weight = weights[std::size_t(column)];
-            weight = skyOnly && z < 0.f ? 0.0 : luminances[std::size_t(row) * columns + std::size_t(column)] * cosine;
-            sum += weight;
-        }
-        appendCumulative(table.columnCumulative, weights.begin(), columns);
-        appendGuide(table.columnGuide, table.columnCumulative.data() + row * columns, columns, guideSteps);
-        rowWeights.push_back(sum);
-    }
-    appendCumulative(table.rowCumulative, rowWeights.begin(), rows);
-    appendGuide(table.rowGuide, table.rowCumulative.data(), rows, guideSteps);
-    return table;
-}
-
-float Lights::density(const Table& table, int row, int column) {
-    const float* rowsTo = table.rowCumulative.data() + row;
-    const float* columnsTo = table.columnCumulative.data() + row * columns + column;
-    const float ofRow = row > 0 ? rowsTo[0] - rowsTo[-1] : rowsTo[0];
-    const float ofColumn = column > 0 ? columnsTo[0] - columnsTo[-1] : columnsTo[0];
-    return ofRow * ofColumn * cellsPerSteradian;
-}
-
 Lights::Aim Lights::aim(const Imath::V3f& normal) const {
-    Aim aim;
-    aim.normal = normal;
+    return {tables_.empty() ? -1 : tables_.tableFor(normal), normal};
+}
+
+void Lights::aim(std::size_t count, const ConstVectors& normal, int* table) const {
     if (tables_.empty())
-        return aim;
-    const Imath::V3f n = frame_.toLocal(normal);
-    const int down = std::min(int(halfTurnsOfCosine(n.z) * (normalsDown - 1) + 0.5f), normalsDown - 1);
-    const int around = int((turnOf(n.x, n.y) + 1.f) * normalsAround + 0.5f) % normalsAround;
-    aim.table = down * normalsAround + around;
-    return aim;
+        std::fill_n(table, (count + 15) / 16 * 16, -1);
+    else
+        tables_.aim({count, normal, table});
+}
+
+void Lights::sampleEnvironment(const LightTables::SampleLanes& lanes, const Vectors& radiance) const {
+    tables_.sample(lanes);
+    environment_->radiance({lanes.count, {lanes.direction.x, lanes.direction.y, lanes.direction.z}, radiance});
 }
 
 Imath::V3f Lights::radiance(Source source, const Imath::V3f& direction) const {
@@ -202,12 +121,7 @@ float Lights::pdf(Source source, Aim aim, const Imath::V3f& direction) const {
     }
     if (aim.table < 0)
         return std::max(aim.normal ^ direction, 0.f) / pi;
-    const Imath::V3f d = frame_.toLocal(direction);
-    const int row = std::clamp(int(0.5f * (d.z + 1.f) * rows), 0, rows - 1);
-    float turn = turnOf(d.x, d.y);
-    turn = turn < 0.f ? turn + 1.f : turn;
-    const int column = std::clamp(int(turn * columns), 0, columns - 1);
-    return density(tables_[std::size_t(aim.table)], row, column);
+    return tables_.density(aim.table, direction);
 }
 
 Lights::Sample Lights::sample(Source source, Aim aim, const Imath::V2f& position) const {
@@ -234,19 +148,16 @@ Lights::Sample Lights::sample(Source source, Aim aim, const Imath::V2f& position
         const Imath::V3f direction = d / length;
         return {direction, environment_->radiance(direction), pdf(environment, aim, direction)};
     }
-    const Table& table = tables_[std::size_t(aim.table)];
-    const Choice row = choose(table.rowCumulative.data(), rows, table.rowGuide.data(), guideSteps, position.y);
-    const Choice column = choose(table.columnCumulative.data() + row.entry * columns, columns,
-                                 table.columnGuide.data() + row.entry * guideSteps, guideSteps, position.x);
-    const Imath::V3f direction = frame_.toWorld(cellDirection(row.entry, column.entry, row.place, column.place));
-    return {direction, environment_->radiance(direction), row.chance * column.chance * cellsPerSteradian};
+    const LightTables::Sample drawn = tables_.sample(aim.table, position);
+    return {drawn.direction, environment_->radiance(drawn.direction), drawn.pdf};
 }
 
 Imath::V3f Lights::irradiance(const Imath::V3f& normal) const {
+    constexpr int rows = LightTables::rows, columns = LightTables::columns;
     Imath::V3d sum(0.0);
     for (int row = 0; row < rows; ++row)
         for (int column = 0; column < columns; ++column) {
-            const Imath::V3f direction = frame_.toWorld(cellDirection(row, column, 0.5f, 0.5f));
+            const Imath::V3f direction = frame_.toWorld(LightTables::cellDirection(row, column, 0.5f, 0.5f));
             const float cosine = direction ^ normal;
             if (cosine > 0.f)
                 sum += Imath::V3d(environment_->radiance(direction) * cosine);

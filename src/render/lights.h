@@ -3,11 +3,12 @@
 
 #include "render/area_light.h"
 #include "render/environment.h"
+#include "render/light_tables.h"
 
 #include <Imath/ImathBox.h>
 
 #include <cmath>
-#include <cstdint>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -57,8 +58,7 @@ class Lights {
         float pdf;            ///< per solid angle; 0: nothing to see
     };
     /// What sampling for a surface with some normal needs to know, found once for all that is asked about it.
-    class Aim {
-        friend class Lights;
+    struct Aim {
         int table = -1; ///< -1: light that is the same from everywhere is sampled by the cosine alone
         Imath::V3f normal{0, 0, 1};
     };
@@ -74,6 +74,16 @@ class Lights {
     float pdf(Source source, const Imath::V3f& normal, const Imath::V3f& direction) const {
         return pdf(source, aim(normal), direction);
     }
+
+    /// Tables for the normals of many lanes. Arrays as RadianceLanes'.
+    void aim(std::size_t count, const ConstVectors& normal, int* table) const;
+    /// What sample() of the environment draws, to the bit; not where it is even.
+    void sampleEnvironment(const LightTables::SampleLanes& lanes, const Vectors& radiance) const;
+    /// Radiance of the environment.
+    void environmentRadiance(const RadianceLanes& lanes) const { environment_->radiance(lanes); }
+    /// Density with which sample() of the environment draws each direction; not where it is even.
+    void environmentDensity(const LightTables::DensityLanes& lanes) const { tables_.density(lanes); }
+
     /// The part of the light that comes from this source, roughly: how often to choose it where only one is sampled.
     float chance(Source source) const {
         return source == areaLights ? areaChance_
@@ -91,7 +101,7 @@ class Lights {
   private:
     std::shared_ptr<const Environment> environment_;
     std::optional<KeyLight> key_;
-    Frame frame_;    ///< of the table: normal is up
+    Frame frame_;    ///< of the tables: normal is up
     Frame keyFrame_; ///< around the key light's direction
     Imath::V3f keyRadiance_{0.f};
     float keyVersine_ = 0.f; ///< 1 - cos of the key light's angular radius
@@ -100,26 +110,7 @@ class Lights {
     float areaChance_ = 0.f;
     double environmentPower_ = 0.0; ///< roughly what a facing surface gets
 
-    // The sphere in cells of equal solid angle: `columns` around, `rows` along the height above the horizon. One table
-    // for each of a few normals, 20 degrees apart. A cell's chance is what its entries differ by from those before, so
-    // that density and sampling agree to the bit; a guide tells where among a row's entries to begin to look (Chen and
-    // Asau 1974).
-    static constexpr int columns = 192;
-    static constexpr int rows = 96;
-    static constexpr float cellsPerSteradian = float(rows * columns / (4.0 * M_PI));
-    static constexpr int guideSteps = 64;
-    static constexpr int normalsAround = 18;
-    static constexpr int normalsDown = 10;
-    struct Table {
-        std::vector<float> rowCumulative;      ///< ends at 1
-        std::vector<float> columnCumulative;   ///< of each row, ends at 1
-        std::vector<std::uint8_t> rowGuide;    ///< `guideSteps` of them
-        std::vector<std::uint8_t> columnGuide; ///< of each row
-    };
-    static Table makeTable(const std::vector<float>& luminances, const Imath::V3f& normal, bool skyOnly);
-    static float density(const Table& table, int row, int column);
-    std::vector<Table> tables_; ///< none where the environment is uniform and all of it is sampled
-    Imath::V3f cellDirection(int row, int column, float down, float across) const;
+    LightTables tables_; ///< none where the environment is uniform and all of it is sampled
 };
 
 /// Key light and set of the program's own pictures, as seen by a viewer at this azimuth: all of it infinitely far away.

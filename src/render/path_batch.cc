@@ -4,17 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace patina {
 
-using Imath::V2f;
 using Imath::V3f;
 
 namespace {
 
-constexpr float infinite = std::numeric_limits<float>::infinity();
 constexpr int mostSamples = 16; // of each pixel at once: a packet of camera rays
 constexpr std::size_t mostPaths = std::size_t(PathBatch::size) * PathBatch::size * mostSamples;
 
@@ -26,28 +23,6 @@ float tent(float u) {
 int groupEnd(int first, int last) {
     const int end = first < mostSamples ? std::max(1, 2 * first) : (first / mostSamples + 1) * mostSamples;
     return std::min(end, last);
-}
-
-float largest(const V3f& c) {
-    return std::max({c.x, c.y, c.z});
-}
-
-float powerHeuristic(float mine, float other) {
-    // By the ratio, so that squares of large densities do not overflow.
-    const float ratio = other / mine;
-    return 1.f / (1.f + ratio * ratio);
-}
-
-// How often the first surface samples the lights in the scene.
-int areaLooks(const Lights& lights) {
-    return lights.hasKey() ? 1 : 2;
-}
-
-Vectors numbersOf(VectorLanes& v) {
-    return {v.x.data(), v.y.data(), v.z.data()};
-}
-ConstVectors numbersOf(const VectorLanes& v) {
-    return {v.x.data(), v.y.data(), v.z.data()};
 }
 
 } // namespace
@@ -77,6 +52,7 @@ PathBatch::PathBatch(const PathSetting& setting, const Camera& camera, const Key
     path_.resize(mostPaths);
     lightsDone_.resize(mostPaths);
     aims_.resize(mostPaths);
+    leavingAims_.resize(mostPaths);
     sources_.resize(mostPaths);
 }
 
@@ -149,24 +125,18 @@ void PathBatch::aim(int first, int last) {
     }
 }
 
-void PathBatch::add(int path, const V3f& throughput, const V3f& light, bool indirect) {
-    const V3f arrives = throughput * light;
-    const float bound = setting_.options.indirectClamp, most = largest(arrives);
-    const V3f sum = light_[std::size_t(path)];
-    light_.set(std::size_t(path), sum + (indirect && bound > 0.f && most > bound ? arrives * (bound / most) : arrives));
-}
-
 void PathBatch::arrive() {
     const Stage& stage = setting_.stage;
     const bool lit = !setting_.lights.area().empty(), goesOn = depth_ < setting_.options.maxDepth;
     floor_.clear();
+    leaving_.clear();
     std::size_t surfaces = 0;
     for (std::size_t ray = 0; ray < wave_.rays.count; ++ray) {
         if (hits_.triangle[ray] < 0) {
             if (stage.hasFloor() && std::isfinite(wave_.rays.farthest[ray]))
                 floor_.push_back(ray);
             else
-                leaveScene(ray);
+                leaving_.push_back(ray);
         } else if (depth_ == 0 || !stage.isClosed() ||
                    !((hits_.geometricNormal[ray] ^ wave_.rays.direction[ray]) > 0.f)) {
             from_[surfaces++] = int(ray);
@@ -194,8 +164,8 @@ void PathBatch::arrive() {
     for (const std::size_t ray : floor_)
         arriveAtFloor(ray);
     std::fill(path_.begin() + std::ptrdiff_t(lanes_), path_.begin() + std::ptrdiff_t(BsdfBatch::padded(lanes_)), 0);
-    for (std::size_t i = 0; i < lanes_; ++i)
-        aims_[i] = setting_.lights.aim(at_.normal[i]);
+    setting_.lights.aim(lanes_, numbersOf(std::as_const(at_.normal)), aims_.data());
+    leaveScene();
 }
 
 void PathBatch::arriveAtFloor(std::size_t ray) {
@@ -222,142 +192,6 @@ void PathBatch::arriveAtFloor(std::size_t ray) {
     // Lights are sampled by radiance times cosine, which is all that a perfectly diffuse surface asks for: there, light
     // met by chance would only add noise.
     lightsDone_[lane] = 1;
-}
-
-void PathBatch::leaveScene(std::size_t ray) {
-    const V3f direction = wave_.rays.direction[ray];
-    const int path = wave_.path[ray];
-    if (depth_ == 0) {
-        light_.set(std::size_t(path), setting_.stage.seenByCamera(setting_.lights, direction));
-        return;
-    }
-    if (!setting_.lights.area().empty())
-        meetAreaLights(ray, infinite);
-    if (wave_.lightsDone[ray])
-        return;
-    V3f light(0.f);
-    const Lights& lights = setting_.lights;
-    for (const auto source : {Lights::environment, Lights::keyLight}) {
-        if (source == Lights::keyLight && lights.chance(source) == 0.f)
-            continue;
-        // As likely as the shadow ray of the surface that the path comes from was to go this way.
-        const float density =
-            lights.pdf(source, wave_.aims[ray], direction) * (depth_ == 1 ? 1.f : lights.chance(source));
-        light += lights.radiance(source, direction) * powerHeuristic(wave_.directionPdf[ray], density);
-    }
-    add(path, wave_.throughput[ray], light, depth_ > 1);
-}
-
-void PathBatch::meetAreaLights(std::size_t ray, float farthest) {
-    if (depth_ == 0 || wave_.lightsDone[ray])
-        return;
-    V3f light(0.f);
-    const AreaLightSet& area = setting_.lights.area();
-    const float share = depth_ == 1 ? float(areaLooks(setting_.lights)) : setting_.lights.chance(Lights::areaLights);
-    for (std::size_t k = 0; k < area.lights().size(); ++k)
-        if (const auto hit =
-                area.hit(k, wave_.rays.origin[ray], wave_.normal[ray], wave_.rays.direction[ray], farthest))
-            light += hit->radiance * powerHeuristic(wave_.directionPdf[ray], hit->pdf * share);
-    add(wave_.path[ray], wave_.throughput[ray], light, depth_ > 1);
-}
-
-void PathBatch::lookAtLights() {
-    bsdfs_.seenFrom(wo_);
-    shadows_.count = 0;
-    shadowPath_.clear();
-    const Lights& lights = setting_.lights;
-    const int draw = 1 + depth_ * drawsPerVertex;
-    const float keyChance = lights.chance(Lights::keyLight), areaChance = lights.chance(Lights::areaLights);
-    const auto lookAll = [&](int number, Lights::Source source, int part = 0, int parts = 1) {
-        std::fill_n(sources_.begin(), lanes_, source);
-        look(number, part, parts);
-    };
-    // At what the camera sees every light is sampled, further on only one of them.
-    if (depth_ == 0) {
-        int number = draw + 1;
-        lookAll(number++, Lights::environment);
-        if (keyChance > 0.f)
-            lookAll(number++, Lights::keyLight);
-        for (int i = 0; i < areaLooks(lights) && areaChance > 0.f; ++i)
-            lookAll(number, Lights::areaLights, i, areaLooks(lights));
-    } else if (keyChance > 0.f || areaChance > 0.f) {
-        sampler_.draw(draw, path_, lanes_, numbers_.x.data(), numbers_.y.data());
-        for (std::size_t i = 0; i < lanes_; ++i) {
-            const float choice = numbers_.x[i];
-            sources_[i] = choice < areaChance               ? Lights::areaLights
-                          : choice - areaChance < keyChance ? Lights::keyLight
-                                                            : Lights::environment;
-        }
-        look(draw + 1);
-    } else {
-        lookAll(draw + 1, Lights::environment);
-    }
-    setting_.stage.rays().occluded(shadows_, blocked_);
-    rays_ += shadows_.count;
-    for (std::size_t i = 0; i < shadows_.count; ++i)
-        if (const auto path = std::size_t(shadowPath_[i]); !blocked_[i])
-            light_.set(path, light_[path] + shadowLight_[i]);
-}
-
-void PathBatch::sampleLight(std::size_t lane) {
-    const Lights& lights = setting_.lights;
-    const Lights::Source source = sources_[lane];
-    const V2f u(numbers_.x[lane], numbers_.y[lane]);
-    // Lights in the scene are sampled so often at the first surface that their density counts so many times.
-    const bool area = source == Lights::areaLights;
-    const float share = depth_ > 0 ? lights.chance(source) : area ? float(areaLooks(lights)) : 1.f;
-    if (area) {
-        const AreaLightSet::Sample towards = lights.area().sample(at_.origin[lane], at_.normal[lane], u);
-        direction_.set(lane, towards.direction);
-        radiance_.set(lane, towards.radiance);
-        density_[lane] = towards.pdf * share;
-        distance_[lane] = towards.distance;
-    } else {
-        const Lights::Sample towards = lights.sample(source, aims_[lane], u);
-        direction_.set(lane, towards.direction);
-        radiance_.set(lane, towards.radiance);
-        density_[lane] = towards.pdf * share;
-        distance_[lane] = infinite;
-    }
-}
-
-void PathBatch::look(int draw, int part, int parts) {
-    const Stage& stage = setting_.stage;
-    const std::size_t padded = BsdfBatch::padded(lanes_);
-    sampler_.draw(draw, path_, lanes_, numbers_.x.data(), numbers_.y.data(), part, parts);
-    const bool even = setting_.lights.isEven() &&
-                      std::all_of(sources_.begin(), sources_.begin() + std::ptrdiff_t(lanes_),
-                                  [](Lights::Source source) { return source == Lights::environment; }) &&
-                      (depth_ == 0 || setting_.lights.chance(Lights::environment) == 1.f);
-    if (even) {
-        const V3f sky = setting_.lights.radiance(Lights::environment, {0, 0, 1});
-        skyLanes({padded, numbersOf(std::as_const(at_.normal)), numbers_.x.data(), numbers_.y.data(),
-                  numbersOf(direction_), density_.data()});
-        std::fill_n(radiance_.x.begin(), padded, sky.x);
-        std::fill_n(radiance_.y.begin(), padded, sky.y);
-        std::fill_n(radiance_.z.begin(), padded, sky.z);
-        std::fill_n(distance_.begin(), padded, infinite);
-    } else {
-        for (std::size_t i = 0; i < lanes_; ++i)
-            sampleLight(i);
-    }
-    localLanes({padded, at_.frames(), numbersOf(std::as_const(direction_)), numbersOf(wi_)});
-    bsdfs_.evaluate(wi_, value_, pdf_);
-    arriveLanes({padded, numbersOf(std::as_const(wi_)), numbersOf(std::as_const(value_)),
-                 numbersOf(std::as_const(radiance_)), numbersOf(std::as_const(throughput_)), pdf_.data(),
-                 density_.data(), lightsDone_.data(), depth_ > 0 ? setting_.options.indirectClamp : 0.f,
-                 numbersOf(arriving_), most_.data()});
-    shadowLight_.resize(std::max(shadowLight_.size(), shadows_.count + lanes_));
-    for (std::size_t i = 0; i < lanes_; ++i) {
-        if (!(most_[i] > 0.f))
-            continue;
-        const V3f origin = at_.origin[i], direction = direction_[i];
-        if (stage.setBlocks(origin, direction, distance_[i]))
-            continue;
-        shadowLight_.set(shadows_.count, arriving_[i]);
-        shadowPath_.push_back(path_[i]);
-        shadows_.add(origin, direction, distance_[i] * 0.9999f); // a light may touch a surface
-    }
 }
 
 void PathBatch::goOn() {

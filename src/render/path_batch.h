@@ -58,7 +58,7 @@ class PathBatch {
         std::vector<int> path; ///< of the batch
         VectorLanes throughput;
         std::vector<float> directionPdf; ///< of the ray, by its BSDF
-        std::vector<Lights::Aim> aims;   ///< for the surface that the ray left
+        std::vector<int> aims;           ///< table of lights for the surface that the ray left
         VectorLanes normal;              ///< of that surface
         std::vector<char> lightsDone;    ///< that surface has all direct light already
 
@@ -70,8 +70,8 @@ class PathBatch {
     /// Lanes to shade, of what the wave's rays met; the light of those that end there is added.
     void arrive();
     void arriveAtFloor(std::size_t ray);
-    /// The light of a path that leaves the scene.
-    void leaveScene(std::size_t ray);
+    /// The light of the paths that leave the scene.
+    void leaveScene();
     /// Light in the scene that a ray passed before it met what is `farthest` away.
     void meetAreaLights(std::size_t ray, float farthest);
     /// Light times what is left of it, bounded where it is indirect.
@@ -98,15 +98,15 @@ class PathBatch {
 
     Wave wave_, next_;
     HitBatch hits_;
-    std::size_t lanes_ = 0;          ///< places to shade
-    std::vector<int> from_;          ///< of each: its ray
-    std::vector<std::size_t> floor_; ///< rays that met the floor
+    std::size_t lanes_ = 0;                    ///< places to shade
+    std::vector<int> from_;                    ///< of each: its ray
+    std::vector<std::size_t> floor_, leaving_; ///< rays that met the floor, and nothing
     SurfaceLanes at_;
     std::vector<int> path_;
     VectorLanes throughput_, wo_, wi_, value_, numbers_, direction_, radiance_, arriving_;
     std::vector<float> pdf_, density_, distance_, most_, weight_, roulette_;
     std::vector<char> lightsDone_;
-    std::vector<Lights::Aim> aims_;
+    std::vector<int> aims_, leavingAims_;
     std::vector<Lights::Source> sources_;
     BsdfBatch bsdfs_;
 

@@ -2,19 +2,13 @@
 // The loops over lanes of a batch of paths. Arrays have room up to the next multiple of 16, to which `count` is
 // rounded.
 
-#include <Imath/ImathVec.h>
+#include "base/vector_lanes.h"
 
 #include <cstddef>
 #include <cstdint>
 
 namespace patina {
 
-struct ConstVectors {
-    const float *x, *y, *z;
-};
-struct Vectors {
-    float *x, *y, *z;
-};
 struct Frames {
     Vectors tangent, bitangent, normal;
 };

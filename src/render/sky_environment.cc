@@ -28,6 +28,7 @@ class SkyEnvironment final : public Environment {
             }
         scale_ = float(horizontalIrradiance / (M_PI * sum / (rows * columns)));
     }
+    using Environment::radiance;
     Imath::V3f radiance(const Imath::V3f& direction) const override {
         Imath::V3d d(set_.toLocal(direction));
         if (d.z < 0.0)

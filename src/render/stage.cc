@@ -161,10 +161,8 @@ float Stage::backdropShare(const V3f& floorPoint) const {
     return t * t * (3.f - 2.f * t);
 }
 
-V3f Stage::seenByCamera(const Lights& lights, const V3f& direction) const {
-    if (scene_.ground)
-        return backdrop_;
-    return scene_.background ? *scene_.background : lights.radiance(direction);
+std::optional<V3f> Stage::seenByCamera() const {
+    return scene_.ground ? backdrop_ : scene_.background;
 }
 
 } // namespace patina

@@ -70,8 +70,8 @@ class Stage {
     /// How far a point of the floor has faded into the backdrop: 0 near the object, 1 far away.
     float backdropShare(const Imath::V3f& floorPoint) const;
     const Imath::V3f& backdrop() const { return backdrop_; }
-    /// What a camera ray sees that meets nothing.
-    Imath::V3f seenByCamera(const Lights& lights, const Imath::V3f& direction) const;
+    /// What a camera ray sees that meets nothing: the lights, where there is no one colour for all of them.
+    std::optional<Imath::V3f> seenByCamera() const;
 
   private:
     /// Where a ray meets floor or turntable; infinitely far away where it does not.

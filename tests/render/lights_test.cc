@@ -1,16 +1,23 @@
 #include "render/lights.h"
 
 #include "base/errors.h"
+#include "base/vector_lanes.h"
 #include "optics/patina_bsdf.h"
+#include "render/image_environment.h"
+#include "render/light_tables.h"
 #include "render/pixel_sampler.h"
+#include "render/sky_environment.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
+#include <vector>
 
 namespace patina {
 namespace {
 
+using Imath::V2f;
 using Imath::V3f;
 
 constexpr double pi = M_PI;
@@ -204,6 +211,79 @@ TEST(Lights, multipleImportanceSamplingKeepsTheMean) {
     }
     EXPECT_NEAR(ofLights / ofBsdf, 1.0, 0.01);
     EXPECT_NEAR(ofBoth / ofLights, 1.0, 0.01);
+}
+
+// Lanes of all three kinds against one at a time, to the bit.
+void expectLanesAgree(const Lights& lights) {
+    constexpr int count = 1003, room = 1008;
+    VectorLanes normals, directions, light, lightByChance;
+    for (VectorLanes* lanes : {&normals, &directions, &light, &lightByChance})
+        lanes->resize(room);
+    std::vector<float> u(room), v(room), density(room), densityByChance(room);
+    std::vector<int> tables(room);
+    const KeyedRandom random(5, "lights", "lanes");
+    PixelSampler sampler(random, 0, 0);
+    for (int i = 0; i < count; ++i) {
+        sampler.startSample(std::uint32_t(i));
+        const V2f position = sampler.next2();
+        normals.set(std::size_t(i), i < 2 ? V3f(0, 0, i == 0 ? 1.f : -1.f) : spiral(i, count));
+        u[std::size_t(i)] = i % 50 == 7 ? 0.99999994f : i % 50 == 9 ? 0.f : position.x;
+        v[std::size_t(i)] = i % 30 == 7 ? 0.99999994f : i % 30 == 9 ? 0.f : position.y;
+    }
+    const VectorLanes& normal = normals;
+    const VectorLanes& chance = normals; // any directions
+    lights.aim(count, numbersOf(normal), tables.data());
+    lights.sampleEnvironment({count, tables.data(), u.data(), v.data(), numbersOf(directions), density.data()},
+                             numbersOf(light));
+    lights.environmentRadiance({count, numbersOf(chance), numbersOf(lightByChance)});
+    std::vector<int> turned(tables.rbegin() + (room - count), tables.rend());
+    turned.resize(room);
+    lights.environmentDensity({count, turned.data(), numbersOf(chance), densityByChance.data()});
+    int lit = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        ASSERT_EQ(tables[i], lights.aim(normal[i]).table);
+        const Lights::Sample one = lights.sample(Lights::environment, normal[i], {u[i], v[i]});
+        ASSERT_EQ(directions[i], one.direction) << i;
+        ASSERT_EQ(light[i], one.radiance) << i;
+        ASSERT_EQ(density[i], one.pdf) << i;
+        ASSERT_EQ(lightByChance[i], lights.radiance(Lights::environment, chance[i])) << i;
+        ASSERT_EQ(densityByChance[i], lights.pdf(Lights::environment, {turned[i], {}}, chance[i])) << i;
+        ASSERT_GT(one.pdf, 0.f);
+        lit += densityByChance[i] > 0.f;
+    }
+    EXPECT_GT(lit, count / 3);
+}
+
+TEST(Lights, lanesDrawWhatSamplesDraw) {
+    Image panorama(64, 32);
+    for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 64; ++x)
+            panorama.setRgb(x, y, {0.01f * float(x), 0.02f * float(y), x == 20 && y == 9 ? 900.f : 0.3f});
+    expectLanesAgree(Lights(std::make_shared<ImageEnvironment>(panorama, UpAxis::y, 33.f), {}, UpAxis::y));
+    expectLanesAgree(studioLights(UpAxis::z, 70.f));
+    expectLanesAgree(daylight({}, UpAxis::y));
+    expectLanesAgree(Lights(std::make_shared<UniformEnvironment>(V3f(1, 2, 3)), {}, UpAxis::z, true));
+}
+
+// Every cell is drawn by exactly the numbers that its chance is worth, those at the ends of rows included.
+TEST(LightTables, aNumberFindsTheCellThatItFallsInto) {
+    constexpr int columns = LightTables::columns, rows = LightTables::rows;
+    std::vector<float> luminances(std::size_t(rows) * columns, 1.f);
+    for (std::size_t i = 0; i < luminances.size(); ++i)
+        luminances[i] += float(i * 2654435761u % 97u) * (i % 16 == 15 ? 30.f : 1.f);
+    const LightTables tables(luminances, Frame{}, false);
+    constexpr int steps = 1200;
+    for (const int table : {0, 77, 179}) {
+        double sum = 0.0; // of solid angles over densities' means: how much of the sphere the numbers cover
+        for (int i = 0; i < steps; ++i)
+            for (int j = 0; j < steps; ++j) {
+                const LightTables::Sample s =
+                    tables.sample(table, {(float(i) + 0.5f) / steps, (float(j) + 0.5f) / steps});
+                ASSERT_GT(s.pdf, 0.f);
+                sum += 1.0 / double(s.pdf);
+            }
+        EXPECT_NEAR(sum / (double(steps) * steps * 4.0 * double(pi)), 1.0, 0.01);
+    }
 }
 
 TEST(Lights, refusesImpossibleLight) {
