@@ -41,8 +41,8 @@ float softPlace(float random, float edge) {
     return std::copysign(1.f - edge * w, x);
 }
 
-// Of a light's plane, -1…1 each, evenly over its shape but for a soft edge. Discs by Shirley and Chiu's concentric map, which keeps
-// neighbours neighbours.
+// Of a light's plane, -1…1 each, evenly over its shape but for a soft edge. Discs by Shirley and Chiu's concentric map,
+// which keeps neighbours neighbours.
 V2f pointOn(const AreaLight& light, const V2f& random) {
     if (light.shape == AreaLight::Shape::rectangle && light.softEdge > 0.f)
         return {softPlace(random.x, light.softEdge), softPlace(random.y, light.softEdge)};

@@ -11,8 +11,8 @@
 namespace patina {
 
 /// The standard error of pixels' means in steps of an 8-bit file (sRGB-encoded): the samples so far come in two halves,
-/// whose means differ by twice what the mean of all is off by, if they are off independently. One pixel's difference says
-/// little, so 4 × 4 pixels and their channels are taken together.
+/// whose means differ by twice what the mean of all is off by, if they are off independently. One pixel's difference
+/// says little, so 4 × 4 pixels and their channels are taken together.
 class BlockNoise {
   public:
     static constexpr int group = 4;        ///< pixels each way

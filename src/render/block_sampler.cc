@@ -47,8 +47,8 @@ void BlockSampler::draw(int draw, const std::vector<int>& path, std::size_t coun
             partOf_[i] = sampleOf_[i] * std::uint32_t(parts) + std::uint32_t(part);
         samples = partOf_.data();
     }
-    drawLanes({(count + 15) / 16 * 16, path.data(), pixelOf_.data(), samples, seeds.first.data(),
-               seeds.second.data(), seeds.third.data(), u, v});
+    drawLanes({(count + 15) / 16 * 16, path.data(), pixelOf_.data(), samples, seeds.first.data(), seeds.second.data(),
+               seeds.third.data(), u, v});
 }
 
 } // namespace patina

@@ -24,7 +24,8 @@ class BlockSampler {
 
     /// Draw number `draw` of these paths, which has room up to the next multiple of 16 and valid numbers there; so have
     /// u and v.
-    /// \param part  one of `parts` points of this draw: those of all samples together are spread as evenly as those of as
+    /// \param part  one of `parts` points of this draw: those of all samples together are spread as evenly as those of
+    /// as
     ///              many samples with one each
     void draw(int draw, const std::vector<int>& path, std::size_t count, float* u, float* v, int part = 0,
               int parts = 1);
