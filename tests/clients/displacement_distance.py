@@ -23,13 +23,11 @@ class LevelSet:
         low = [x - 2 for x in low]
         self.values = numpy.empty([h + 3 - l for l, h in zip(low, high)], numpy.float32)
         grid.copyToArray(self.values, ijk=low)
-        self.low = numpy.array(low, float)
         self.voxel = grid.transform.voxelSize()[0]
-        origin = numpy.array(grid.transform.indexToWorld((0, 0, 0)))
-        assert numpy.all(numpy.abs(origin) < 1e-9), "the lattice is expected to start at the origin"
+        self.first = numpy.array(grid.transform.indexToWorld(tuple(low)))  # where the array's first voxel lies
 
     def at(self, points):
-        index = points / self.voxel - self.low
+        index = (points - self.first) / self.voxel
         cell = numpy.clip(numpy.floor(index).astype(int), 0, numpy.array(self.values.shape) - 2)
         part = index - cell
         total = numpy.zeros(len(points))
