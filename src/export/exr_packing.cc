@@ -27,9 +27,7 @@ struct ExrPacking::Buffers {
 };
 
 ExrPacking::ExrPacking() : buffers_(new Buffers) {}
-ExrPacking::~ExrPacking() {
-    delete buffers_;
-}
+ExrPacking::~ExrPacking() = default;
 
 exr_result_t ExrPacking::pack(exr_encode_pipeline_t& pipeline) {
     const auto bytes = static_cast<std::size_t>(pipeline.packed_bytes);

@@ -3,11 +3,13 @@
 
 #include <openexr.h>
 
+#include <memory>
+
 namespace patina {
 
-/// For `exr_encode_pipeline_t::compress_fn` of a file with ZIP compression: what OpenEXR makes of a chunk, byte for
-/// byte another stream of the same samples, in less than half the time that its zlib takes (OpenEXR itself uses
-/// libdeflate from 3.2 on). Lossless. `encoding_user_data` must be an ExrPacking.
+/// For `exr_encode_pipeline_t::compress_fn` of a file with ZIP compression: another stream of the same samples as
+/// OpenEXR's, in about six tenths of the time of zlib's fastest level (OpenEXR itself uses libdeflate from 3.2 on).
+/// Lossless. `encoding_user_data` must be an ExrPacking.
 exr_result_t packWithDeflate(exr_encode_pipeline_t* pipeline);
 
 /// What a file's chunks are packed with, one after another.
@@ -15,14 +17,12 @@ class ExrPacking {
   public:
     ExrPacking();
     ~ExrPacking();
-    ExrPacking(const ExrPacking&) = delete;
-    ExrPacking& operator=(const ExrPacking&) = delete;
 
     exr_result_t pack(exr_encode_pipeline_t& pipeline);
 
   private:
     struct Buffers;
-    Buffers* buffers_;
+    std::unique_ptr<Buffers> buffers_;
 };
 
 } // namespace patina

@@ -2,6 +2,7 @@
 
 #include "base/lane_kernel.h"
 #include "base/turns.h"
+#include "render/scrambled_sobol.h"
 
 #include <cmath>
 
@@ -18,47 +19,13 @@ PATINA_LANE_BODY float smaller(float a, float b) {
     return b < a ? b : a;
 }
 
-PATINA_LANE_BODY std::uint32_t reverseBits(std::uint32_t v) {
-    v = ((v >> 1) & 0x55555555u) | ((v & 0x55555555u) << 1);
-    v = ((v >> 2) & 0x33333333u) | ((v & 0x33333333u) << 2);
-    v = ((v >> 4) & 0x0F0F0F0Fu) | ((v & 0x0F0F0F0Fu) << 4);
-    v = ((v >> 8) & 0x00FF00FFu) | ((v & 0x00FF00FFu) << 8);
-    return (v >> 16) | (v << 16);
-}
-
-// As in pixel_sampler.cc.
-PATINA_LANE_BODY std::uint32_t scrambleReversed(std::uint32_t v, std::uint32_t seed) {
-    v += seed;
-    v ^= v * 0x6c50b47cu;
-    v ^= v * 0xb82f1e52u;
-    v ^= v * 0xc7afe638u;
-    v ^= v * 0x8d22f6e6u;
-    return v;
-}
-
-PATINA_LANE_BODY std::uint32_t sobolSecondReversed(std::uint32_t index) {
-    index ^= (index & 0xAAAAAAAAu) >> 1;
-    index ^= (index & 0xCCCCCCCCu) >> 2;
-    index ^= (index & 0xF0F0F0F0u) >> 4;
-    index ^= (index & 0xFF00FF00u) >> 8;
-    index ^= index >> 16;
-    return index;
-}
-
-PATINA_LANE_BODY float unitOf(std::uint32_t word) {
-    return float(std::int32_t(word >> 8)) * (1.f / 16777216.f);
-}
-
 PATINA_LANE_BODY void drawLanesBody(const DrawLanes& lanes) {
     const int* path = lanes.path;
     float *u = lanes.u, *v = lanes.v;
     PATINA_LANES
     for (std::size_t i = 0; i < lanes.count; ++i) {
         const int pixel = lanes.pixelOf[path[i]];
-        const std::uint32_t sample = lanes.sampleOf[path[i]];
-        const std::uint32_t index = reverseBits(scrambleReversed(reverseBits(sample), lanes.seed0[pixel]));
-        u[i] = unitOf(reverseBits(scrambleReversed(index, lanes.seed1[pixel])));
-        v[i] = unitOf(reverseBits(scrambleReversed(sobolSecondReversed(index), lanes.seed2[pixel])));
+        scrambledSobol(lanes.sampleOf[path[i]], lanes.seed0[pixel], lanes.seed1[pixel], lanes.seed2[pixel], u[i], v[i]);
     }
 }
 

@@ -4,8 +4,6 @@
 #include "volume/distance_search.h"
 #include "volume/level_set_blocks.h"
 
-#include <openvdb/openvdb.h>
-
 #include <array>
 #include <cstdint>
 #include <vector>
