@@ -30,15 +30,6 @@ Imath::V2f PixelSampler::next2(int part, int parts) {
     return point(sample_ * std::uint32_t(parts) + std::uint32_t(part), seedsOf(draw_++));
 }
 
-void PixelSampler::draw2(int draw, int first, int last, float* u, float* v) {
-    const std::array<std::uint32_t, 4> seed = seedsOf(draw);
-    for (int i = first; i < last; ++i) {
-        const Imath::V2f p = point(std::uint32_t(i), seed);
-        u[i - first] = p.x;
-        v[i - first] = p.y;
-    }
-}
-
 float PixelSampler::next1() {
     const auto& seed = seedsOf(draw_++);
     const std::uint32_t index = reverseBits(scrambleReversed(reverseBits(sample_), seed[0]));

@@ -25,9 +25,6 @@ class PixelSampler {
     /// Skips to draw number `draw` of this sample, so that bounce n uses the same draws whatever bounce n-1 needed.
     void seek(int draw) { draw_ = draw; }
 
-    /// Draw number `draw` of samples first … last - 1 at once, to the bit what next2() gives.
-    void draw2(int draw, int first, int last, float* u, float* v);
-
     Imath::V2f next2();
     /// One of `parts` points of this draw: those of all samples together are spread as evenly as those of as many
     /// samples with one each.

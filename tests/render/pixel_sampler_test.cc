@@ -63,18 +63,6 @@ TEST(PixelSampler, pixelsAndDrawsAreIndependent) {
     EXPECT_NEAR(acrossPixels, 0.0, 0.0066);
 }
 
-TEST(PixelSampler, ManySamplesAtOnceAreTheSame) {
-    const KeyedRandom random(9, "picture", "test");
-    PixelSampler all(random, 4, 5), each(random, 4, 5);
-    float u[40], v[40];
-    all.draw2(3, 7, 47, u, v);
-    for (int i = 0; i < 40; ++i) {
-        each.startSample(std::uint32_t(7 + i));
-        each.seek(3);
-        EXPECT_EQ(each.next2(), Imath::V2f(u[i], v[i]));
-    }
-}
-
 TEST(PixelSampler, aDrawDependsOnlyOnPixelSampleAndNumber) {
     const KeyedRandom random(9, "picture", "test");
     PixelSampler inOrder(random, 4, 5), outOfOrder(random, 4, 5);
