@@ -259,7 +259,9 @@ void addRenderOptions(CLI::App& app, Options& options) {
         ->check(numberWithin(0.0, 1e6))
         ->type_name("X")
         ->group(light);
-    app.add_flag("!--no-floor", options.floor, "Without a floor: the light itself is the background")->group(light);
+    app.add_flag_callback("--no-floor", [&options] { options.floor = false; },
+                          "Without a floor: the light itself is the background")
+        ->group(light);
     app.add_flag("--exr", options.exr,
                  "Also NAME.exr: light, albedo, N, Z, A, material (0 metal, k layer k), thickness in µm")
         ->group(files);
