@@ -1,6 +1,5 @@
 #include "operators/erode.h"
 
-#include "operators/even_shift.h"
 #include "operators/interface_foot.h"
 #include "operators/nest_layers.h"
 #include "operators/sealed_erosion.h"
@@ -56,6 +55,17 @@ void walkDown(const std::vector<float*>& nest, const LayerHardness& hardness, do
         surface[pos] += budget[pos] * gives;
 }
 
+// The same budget in every active voxel of a leaf, but none on the back of a sheet.
+void evenBudget(const FloatLeaf& leaf, const SurfaceBinding& binding, std::size_t n, float thickness, float* budget) {
+    if (leaf.isDense() && !binding.hasBack()) {
+        std::fill(budget, budget + FloatLeaf::SIZE, thickness);
+        return;
+    }
+    std::fill(budget, budget + FloatLeaf::SIZE, 0.f);
+    const SurfacePoint* under = binding.pointsOf(n);
+    forActive(leaf, [&](openvdb::Index pos) { budget[pos] = (under++)->triangle < 0 ? 0.f : thickness; });
+}
+
 // A budget goes furthest in the softest of the layers, and least far in the hardest.
 ShiftReach reachOf(const LayerHardness& hardness, std::optional<double> metalHardness) {
     ShiftReach reach;
@@ -89,12 +99,11 @@ OperationReport erode(Workpiece& work, double thicknessUm, const ThicknessMap* m
     const bool walk = !hardness.empty() || metalHardness.value_or(1.0) != 1.0;
     const ShiftReach reach = walk ? reachOf(hardness, metalHardness) : ShiftReach();
     const OpenAir air(volume);
-    std::optional<EvenShift> even;
     ShiftField field;
     std::vector<float> rises; // where closed air is behind a wall
-    if (!map && thickness * reach.most <= voxelSize && isThinStack(volume) && !air.anyClosed()) {
-        even.emplace(work, thickness);
-    } else {
+    // The same everywhere, at a slope that is 1: no field is needed to say so.
+    const bool even = !map && thickness * reach.most <= voxelSize && isThinStack(volume) && !air.anyClosed();
+    if (!even) {
         field = makeShiftField(work, thicknessUm, map, false, report, progress, reach);
         if (air.anyClosed())
             rises = sealedRise(work, air, thickness, map, metalHardness.has_value(), progress);
@@ -126,7 +135,7 @@ OperationReport erode(Workpiece& work, double thicknessUm, const ThicknessMap* m
         std::copy(top, top + FloatLeaf::SIZE, surface); // also where voxels are not active
         if (even) {
             alignas(64) float budget[FloatLeaf::SIZE];
-            even->read(n, budget);
+            evenBudget(*leaves[0][n], work.binding, n, static_cast<float>(thickness), budget);
             if (walk)
                 walkDown(nest, costs, metalHardness.value_or(1.0), budget, surface);
             else
@@ -182,12 +191,6 @@ OperationReport erode(Workpiece& work, double thicknessUm, const ThicknessMap* m
         }
         return cuts != 0;
     };
-    // An even shift reads the slopes of the present surface in other leaves too, so no leaf of that changes before all
-    // have been read: a new one waits in a buffer of its own, which then takes the old one's place. What lies below
-    // changes at once.
-    std::vector<FloatLeaf::Buffer> newTop;
-    if (even)
-        newTop = std::vector<FloatLeaf::Buffer>(leaves[0].size(), FloatLeaf::Buffer(openvdb::PartialCreate(), 0.f));
     tbb::parallel_for(std::size_t(0), leaves[0].size(), [&](std::size_t n) {
         const std::vector<float*> nest = nestOf(n);
         const float* const top = nest[layers];
@@ -205,24 +208,11 @@ OperationReport erode(Workpiece& work, double thicknessUm, const ThicknessMap* m
         if (!eroded)
             return;
         changed[n] = 1;
-        if (even) {
-            newTop[n].allocate();
-            float* const raised = newTop[n].data();
-            for (openvdb::Index pos = 0; pos < FloatLeaf::SIZE; ++pos)
-                raised[pos] = std::max(top[pos], surface[pos]);
-        } else {
-            lower(nest[layers], surface);
-        }
         const std::size_t lowest = metalHardness ? 0 : 1;
-        for (std::size_t k = layers; k-- > lowest;)
+        for (std::size_t k = layers + 1; k-- > lowest;)
             if (!lower(nest[k], surface))
                 break; // what lies below is deeper still
     });
-    if (even)
-        for (std::size_t n = 0; n < leaves[0].size(); ++n)
-            if (changed[n])
-                leaves[layers][n]->swap(newTop[n]);
-    newTop.clear();
 
     if (metalHardness && metalDepthVoxels(volume) == 0.0)
         grids.metal.reset(); // it did not come so far

@@ -123,7 +123,7 @@ OperationReport growLayer(Workpiece& work, const std::string& material, double t
                     const NestCell cell = sampler.locate(foot.position);
                     Imath::V3d gradient;
                     const double phi = sampler.valueAndGradient(k, cell, gradient);
-                    const double slope = gradient.length() / voxelSize;
+                    const double slope = feet.slope(gradient);
                     // The first of them is remembered: that is where it begins anew if it is in none.
                     const bool isThere = sampler.value(k - 1, cell) - phi > nanometre * slope;
                     if (!isThere && !(everywhere && lowest[at] == 0))
@@ -140,7 +140,7 @@ OperationReport growLayer(Workpiece& work, const std::string& material, double t
                     lowest[at] = static_cast<std::uint16_t>(k);
                     if (far)
                         places[at] = {Imath::V3f(foot.position + gradient.normalized() * (t / voxelSize)),
-                                      static_cast<float>(slope)};
+                                      static_cast<float>(gradient.length() / voxelSize)};
                     if (isThere)
                         break;
                 }

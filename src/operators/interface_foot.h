@@ -7,7 +7,10 @@
 
 namespace patina {
 
-/// Whether the whole stack is so small a part of a voxel that the model's closest point serves all interfaces.
+/// Whether the whole stack is so small a part of a voxel (less than a tenth) that the model's closest point serves all
+/// interfaces, and their slope there is that of phi_0: 1, as of any true distance. (What they differ by is tangential,
+/// s a voxel, and makes it the root of 1 + s².) The trilinear field's own is off by a percent on round surfaces, and by a
+/// quarter beside sharp edges.
 bool isThinStack(const LayerVolume& volume);
 
 /// Finds feet on any interface of a nest. Valid while the nest is unchanged; safe from any thread.
@@ -23,6 +26,10 @@ class InterfaceFoot {
     /// The foot on phi_k of the active voxel `coord`, number `at` of the binding. Where the whole stack is a small part
     /// of a voxel the model's closest point serves all interfaces.
     Foot find(int k, const openvdb::Coord& coord, std::size_t at) const;
+
+    /// |grad phi_k| at a foot where its trilinear gradient (scene units per voxel) has been read: scene units per scene
+    /// unit; 1 in a thin stack.
+    double slope(const Imath::V3d& gradient) const { return thinStack_ ? 1.0 : gradient.length() / voxelSize_; }
 
     const NestSampler& sampler() const { return sampler_; }
 

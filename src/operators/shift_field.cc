@@ -29,12 +29,12 @@ ShiftField makeShiftField(Workpiece& work, double thicknessUm, const ThicknessMa
     const SurfaceMesh& surface = binding.surface();
     const auto leaves = leavesOf(std::as_const(grids.base->tree()));
     const std::size_t total = binding.leafStart(leaves.size());
-    // Where the stack is a small part of a voxel, the model's closest point is the layer's too.
+    // Where the stack is a small part of a voxel, the model's closest point is the layer's too, and so is its slope: 1.
     const bool thickStack = !isThinStack(volume);
     const bool everywhere = !map && !binding.hasBack();
     const bool needDistance = drawn * reach.most > voxelSize;
-    const bool needSlope =
-        !(everywhere && drawn * reach.least >= 2.0 * voxelSize); // from two voxels on the distance alone counts
+    const bool needSlope = thickStack && !(everywhere && drawn * reach.least >=
+                                                             2.0 * voxelSize); // from there on the distance alone counts
     const bool needFeet = thickStack && (needSlope || !everywhere);
 
     // D(phi_0) is phi_0 itself: recomputed from its crossings it would lose the model's edges.
@@ -54,6 +54,7 @@ ShiftField makeShiftField(Workpiece& work, double thicknessUm, const ThicknessMa
     else if (needDistance)
         field.distance.assign(total, 0.f);
     const bool copyDistance = needDistance && bare;
+    progress.checkpoint();
     if (!copyDistance && !needSlope && everywhere)
         return field;
 

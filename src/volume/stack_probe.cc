@@ -52,6 +52,19 @@ struct StackProbe::Nest {
         return phi / scale.voxelSize;
     }
 
+    // How far from the base a crossing s along the line is. Within a voxel phi_0 itself says it, a true distance whatever
+    // its trilinear slope beside an edge, and whatever the angle between the line and the voxels' normal; from two voxels
+    // on it is the way along the line, which a crease's other side does not shorten.
+    double distanceFromBase(const Imath::V3d& origin, const Imath::V3d& direction, double base, double s) const {
+        const double along = s - base, share = std::clamp(2.0 - std::abs(along), 0.0, 1.0);
+        if (share == 0.0)
+            return along;
+        const double near = std::clamp(along, -1.0, 1.0);
+        const Imath::V3d at = origin + direction * (base + near);
+        const double away = sampler.value(sampler.reference(), sampler.locate(at)) / scale.voxelSize;
+        return along + share * (away - near);
+    }
+
     // The first outward crossing of phi_k in [from, to], phi_k(from) <= 0 assumed; `to` where there is none. A line
     // that meets the metal again before it is out of the layer (a crease filled to the brim) crosses there. Newton with
     // a bracket: along a line the trilinear field is a cubic within each cell and kinked between cells.
@@ -281,9 +294,14 @@ StackProbe::Reading StackProbe::read(const Imath::V3d& point, const Imath::V3d& 
         reading.height = (below - base) * scale.voxelSize;
         return reading;
     }
+    double distance = nest.distanceFromBase(origin, direction, base, below);
     for (int k = 1; k <= nest.layers; ++k) {
         const double crossing = std::max(below, nest.crossing(k, origin, direction, below, base + nest.reach));
-        thicknessUm[k - 1] = (crossing - below) * umPerVoxel;
+        if (crossing > below) {
+            const double next = nest.distanceFromBase(origin, direction, base, crossing);
+            thicknessUm[k - 1] = std::max(0.0, next - distance) * umPerVoxel;
+            distance = std::max(distance, next);
+        }
         below = crossing;
     }
     reading.height = (below - base) * scale.voxelSize;

@@ -10,7 +10,10 @@
 namespace patina {
 
 /// Reads thicknesses along the normal of the base surface (DESIGN: differences of crossings along the *same* line, so
-/// that voxelisation errors larger than the patina cancel). Valid while the volume is unchanged; safe from any thread.
+/// that voxelisation errors larger than the patina cancel). Within a voxel of the base a thickness is the difference of
+/// phi_0, a true distance, at two crossings: a film keeps it beside sharp edges, where the trilinear field is flatter, and
+/// where the line leans over the base. From two voxels on it is the length of the line; between, a blend of both. Heights
+/// are along the line everywhere. Valid while the volume is unchanged; safe from any thread.
 class StackProbe {
   public:
     explicit StackProbe(const LayerVolume& volume);

@@ -75,7 +75,7 @@ TEST(Fill, VolumesOfGrooveAndWaveAreWithinHalfAPercent) {
         // At the window's ends the slab ends along the normal, not along z: what is missing there stands to the side.
         const double beyond = 2.0 * 0.5 * 2.0 * 2.0 / 30.0;
         const double mean =
-            test::meanOver(low, high, 301, [&](double x, double) { return column.thickness(1, x, 30.0); });
+            test::meanOver(low, high, 301, [&](double x, double) { return column.height(x, 30.0); });
         EXPECT_NEAR(mean, exact + beyond, 0.005 * exact);
     }
     {
@@ -88,7 +88,7 @@ TEST(Fill, VolumesOfGrooveAndWaveAreWithinHalfAPercent) {
             return std::hypot(1.0, 2.0 * 2.0 * M_PI / 30.0 * std::cos(2.0 * M_PI * x / 30.0));
         });
         const double mean =
-            test::meanOver(low, high, 301, [&](double x, double) { return column.thickness(1, x, 30.0); });
+            test::meanOver(low, high, 301, [&](double x, double) { return column.height(x, 30.0); });
         EXPECT_NEAR(mean, 0.8 * arc, 0.005 * 0.8 * arc);
     }
 }

@@ -31,7 +31,7 @@ inline double meanOver(double from, double to, int count, const Height& value) {
     return sum / (double(count) * count);
 }
 
-/// Thickness of layer k (from 1) along z above (x, y), in µm.
+/// Thickness of layer k (from 1) above (x, y), in µm, and the height of the surface along z.
 class Column {
   public:
     Column(const LayerVolume& volume, Height base)
