@@ -168,6 +168,13 @@ OperationReport erode(Workpiece& work, double thicknessUm, const ThicknessMap* m
         if (!metalHardness)
             for (openvdb::Index pos = 0; pos < FloatLeaf::SIZE; ++pos)
                 surface[pos] = std::min(surface[pos], floor[pos]);
+        else if (work.binding.hasBack())
+            // The edge of a sheet is where the model ends, not a wall that could be eaten away.
+            forActive(*leaves[0][n], [&](openvdb::Index pos) {
+                if (surface[pos] > floor[pos] &&
+                    work.binding.behind(grids.space.position(leaves[0][n]->offsetToGlobalCoord(pos)) * voxelSize))
+                    surface[pos] = floor[pos];
+            });
     };
     // A front that has come through metal has opened no pore: what is still closed behind it stays as it is.
     std::optional<OpenAir> stillClosed;

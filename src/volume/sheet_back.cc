@@ -66,7 +66,7 @@ ClosedSurface closeSurface(const SurfaceMesh& surface, double thickness) {
     ClosedSurface closed;
     closed.positions = surface.positions;
     closed.triangles = surface.triangles;
-    closed.frontTriangles = surface.triangles.size();
+    closed.frontTriangles = closed.firstRimTriangle = surface.triangles.size();
     if (surface.closed)
         return closed;
 
@@ -94,16 +94,22 @@ ClosedSurface closeSurface(const SurfaceMesh& surface, double thickness) {
         if (isOpen[t])
             closed.triangles.emplace_back(c[0] + count, c[2] + count, c[1] + count);
     }
+    closed.firstRimTriangle = closed.triangles.size();
     for (int shell = 0; shell < topology.shellCount(); ++shell)
         for (const MeshTopology::Side& side : topology.openSides(shell)) {
             // The face's own vertices at the side's places.
             int a = side.from, b = side.to;
+            ClosedSurface::OpenSide& open = closed.openSides.emplace_back(ClosedSurface::OpenSide{side.face, 0, 1});
             for (int c = 0; c < 3; ++c) {
                 const int v = surface.triangles[side.face][c];
-                if (topology.place(v) == side.from)
+                if (topology.place(v) == side.from) {
                     a = v;
-                if (topology.place(v) == side.to)
+                    open.from = c;
+                }
+                if (topology.place(v) == side.to) {
                     b = v;
+                    open.to = c;
+                }
             }
             if (topology.turned(side.face))
                 std::swap(a, b);

@@ -224,8 +224,10 @@ struct StackProbe::Nest {
         double s = base;
         double f = along(0, origin, direction, s, slope);
         double deepest = along(sampler.reference(), origin, direction, s, slope);
-        while (f > 0.0 && s > base - depth) {
-            const double next = s - std::clamp(f, 1e-9, 0.5);
+        // Where the line grazes a wall, as it does under the edge of a sheet, steps by the distance would be endless.
+        constexpr double touches = 1e-6, leastStep = 0.05;
+        while (f > touches && s > base - depth) {
+            const double next = s - std::clamp(f, leastStep, 0.5);
             const double original = along(sampler.reference(), origin, direction, next, slope);
             if (original > deepest + 1e-6)
                 return s;

@@ -17,6 +17,9 @@ namespace {
 // Triangles with longer edges are asked piece by piece.
 constexpr double largeVoxels = 8.0, pieceVoxels = 4.0;
 
+// A film on a sheet reaches as far down the rim: a voxel would do for the cells that the edge itself runs through.
+constexpr double rimVoxels = 2.0;
+
 enum Sight : char { seen, buried, partly };
 
 // A triangle and where its corners are in the one it was cut from.
@@ -75,7 +78,7 @@ Sight examine(const NestSampler& sampler, const Part& part, double voxelSize, do
 } // namespace
 
 SurfaceBinding::SurfaceBinding(const LayerVolume& volume, const SurfaceMesh& surface, ClosedSurface closed)
-    : surface_(&surface), closed_(std::move(closed)) {
+    : surface_(&surface), closed_(std::move(closed)), rimReach_(rimVoxels * volume.scale().voxelSize) {
     findVisible(volume);
     rebind(volume);
 }
@@ -213,14 +216,16 @@ void SurfaceBinding::refineBase(LayerVolume& volume) {
             const openvdb::Coord c = voxel.getCoord();
             const Imath::V3d x = space.position(c) * voxelSize;
             double distance;
-            if (points_[at].triangle >= 0) {
+            if (points_[at].triangle >= 0 && !hasBack()) {
                 distance = (positionAt(*surface_, points_[at]) - x).length();
             } else {
                 const bool metal = *voxel < 0.f;
-                const auto back =
-                    metal ? scene_->closest(Imath::V3f(x), static_cast<float>(deepest) + 0.1f * float(voxelSize))
-                          : scene_->closest(Imath::V3f(x));
-                distance = back ? back->distance : metal ? 2.0 * deepest : std::abs(*voxel);
+                const auto guess = static_cast<float>(1.0005 * std::abs(*voxel) + 0.02 * voxelSize);
+                auto nearest =
+                    scene_->closest(Imath::V3f(x), metal ? float(deepest) + 0.1f * float(voxelSize) : guess);
+                if (!nearest && !metal)
+                    nearest = scene_->closest(Imath::V3f(x));
+                distance = nearest ? nearest->distance : metal ? 2.0 * deepest : std::abs(*voxel);
             }
             if (*voxel < 0.f && distance > deepest) {
                 leaves[n]->setValueOff(voxel.pos(), inside);
@@ -265,7 +270,30 @@ SurfacePoint SurfaceBinding::closest(const Imath::V3d& position, float radius, f
         point.v = uv.y;
     }
     point.triangle = visible_[point.triangle];
-    return static_cast<std::size_t>(point.triangle) < closed_.frontTriangles ? point : SurfacePoint();
+    return static_cast<std::size_t>(point.triangle) < closed_.frontTriangles ? point : edgeAbove(point);
+}
+
+SurfacePoint SurfaceBinding::edgeAbove(const SurfacePoint& onRim) const {
+    if (static_cast<std::size_t>(onRim.triangle) < closed_.firstRimTriangle)
+        return {};
+    const Imath::V3i& c = closed_.triangles[onRim.triangle];
+    const Imath::V3d point = Imath::V3d(closed_.positions[c[0]]) * (1.0 - onRim.u - onRim.v) +
+                             Imath::V3d(closed_.positions[c[1]]) * onRim.u + Imath::V3d(closed_.positions[c[2]]) * onRim.v;
+    const ClosedSurface::OpenSide& side = closed_.openSides[(onRim.triangle - closed_.firstRimTriangle) / 2];
+    const Imath::V3i& face = closed_.triangles[side.triangle];
+    const Imath::V3d from(closed_.positions[face[side.from]]), along = Imath::V3d(closed_.positions[face[side.to]]) - from;
+    const double share = std::clamp((point - from).dot(along) / std::max(along.length2(), 1e-300), 0.0, 1.0);
+    if ((point - from - along * share).length() > rimReach_)
+        return {};
+    float weights[3] = {0.f, 0.f, 0.f};
+    weights[side.from] = static_cast<float>(1.0 - share);
+    weights[side.to] = static_cast<float>(share);
+    return {side.triangle, weights[1], weights[2]};
+}
+
+bool SurfaceBinding::behind(const Imath::V3d& position) const {
+    const auto found = hasBack() ? scene_->closest(Imath::V3f(position)) : std::nullopt;
+    return found && static_cast<std::size_t>(visible_[found->point.triangle]) >= closed_.frontTriangles;
 }
 
 bool SurfaceBinding::occluded(const Imath::V3f& origin, const Imath::V3f& direction) const {

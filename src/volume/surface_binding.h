@@ -14,8 +14,9 @@
 namespace patina {
 
 /// The closest point of the model for every active voxel, in the order of the base's leaves and active voxels.
-/// Voxels whose closest point lies on the back that a sheet was given belong to no point (triangle -1). Faces buried
-/// inside other parts of the model (metal on both their sides) are no surface: no voxel belongs to them.
+/// Voxels whose closest point lies on the back that a sheet was given belong to no point (triangle -1); those under its
+/// rim, down to two voxels below the sheet's edge, to the edge, so that a film reaches it and ends there everywhere alike.
+/// Faces buried inside other parts of the model (metal on both their sides) are no surface: no voxel belongs to them.
 class SurfaceBinding {
   public:
     /// `closed` must be what the volume was voxelised from and `surface`, which must outlive this, what it was made of.
@@ -38,11 +39,14 @@ class SurfaceBinding {
     /// Those of leaf n's active voxels, one after the other.
     const SurfacePoint* pointsOf(std::size_t n) const { return points_.data() + leafStart_[n]; }
 
-    /// The closest point to any position (scene units); triangle -1 on the back.
+    /// The closest point to any position (scene units), or that of the edge above the rim; triangle -1 on the back.
     /// `radius` (scene units) is a guess at the distance that makes the search short; a wrong one costs time only.
     /// Beyond `widest` nothing is found (triangle -1).
     SurfacePoint closest(const Imath::V3d& position, float radius = std::numeric_limits<float>::infinity(),
                          float widest = std::numeric_limits<float>::infinity()) const;
+
+    /// Whether what is closest to a position is the back or the rim of a sheet.
+    bool behind(const Imath::V3d& position) const;
 
     /// Whether the model itself is in the way of a ray to infinity.
     bool occluded(const Imath::V3f& origin, const Imath::V3f& direction) const;
@@ -52,10 +56,12 @@ class SurfaceBinding {
 
   private:
     bool findVisible(const LayerVolume& volume); ///< whether that is other than before
+    SurfacePoint edgeAbove(const SurfacePoint& onRim) const; ///< triangle -1 where it is too far, or not on the rim
     void countVoxels(const LayerVolume& volume); ///< into leafStart_
 
     const SurfaceMesh* surface_;
     ClosedSurface closed_;
+    double rimReach_; ///< scene units
     /// A piece of a large triangle of which other pieces are buried.
     struct Piece {
         Imath::V2f corners[3]; ///< u, v in its triangle

@@ -52,6 +52,24 @@ TEST(Coat, TrueScaleFilmsOfAThousandthOfAVoxelStandToHalfAPercent) {
         EXPECT_LT(rmsError(*piece, int(k) + 1, [&](const Imath::V3d&) { return films[k]; }), 0.005 * films[k]) << k;
 }
 
+TEST(Coat, OnASheetReachesItsEdgeAndLeavesTheBackBare) {
+    const auto piece = test::makePiece(test::sheet(24.f, 12), test::voxelScale(), 3.0);
+    auto work = piece->work();
+    coat(work, "soot", 0.05, nullptr, piece->progress);
+    const StackProbe probe(*piece->volume);
+    const double back = -sheetBackVoxels;
+    for (double s = 0.05; s < 24.0; s += 0.31)
+        for (const Imath::V3d& p : {Imath::V3d(0.02, s, 0.0), Imath::V3d(23.98, s, 0.0), Imath::V3d(s, 0.02, 0.0)}) {
+            double um = 0.0;
+            ASSERT_TRUE(probe.read(p, {0.0, 0.0, 1.0}, &um).found) << p.x << ' ' << p.y;
+            EXPECT_NEAR(um, 0.05, 1e-4) << p.x << ' ' << p.y;
+            if (s > 3.0 && s < 21.0) {
+                ASSERT_TRUE(probe.read({s, 12.0, back}, {0.0, 0.0, -1.0}, &um).found) << s;
+                EXPECT_EQ(um, 0.0) << s;
+            }
+        }
+}
+
 TEST(Coat, AMapIsReadAtTheClosestPointOfTheSurface) {
     const auto piece = test::makePiece(test::sphere(24.f, 5), test::voxelScale(), 7.0);
     auto work = piece->work();
