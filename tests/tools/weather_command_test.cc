@@ -97,9 +97,13 @@ TEST(WeatherCommand, DryRunPrintsTheScriptsAndWritesNothing) {
 TEST(WeatherCommand, WhatItCannotDoIsACommandLineError) {
     const TemporaryFolder folder;
     const std::vector<std::pair<Arguments, std::string>> wrong = {
-        {{"--latitude", "91"}, "beyond the poles"},      {{"--years", "0"}, "is not a time"},
-        {{"--years", "5:1:1"}, "is not a time"},         {{"--category", "C9"}, "C9"},
-        {{"--extremes"}, "only a category has a range"}, {{"--metal", "gold"}, "--metal"},
+        {{"--latitude", "91"}, "beyond the poles"},
+        {{"--years", "0"}, "is not a time"},
+        {{"--years", "0:10:-5"}, "is not a time"},
+        {{"--years", "5:1:1"}, "'5:1:1' runs backwards: year 1 comes before year 5"},
+        {{"--category", "C9"}, "C9"},
+        {{"--extremes"}, "only a category has a range"},
+        {{"--metal", "gold"}, "--metal"},
     };
     for (const auto& [words, message] : wrong) {
         Arguments line = {"weather", "sphere", "--environment", "marine", "-o", "w"};

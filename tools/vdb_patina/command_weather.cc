@@ -56,8 +56,13 @@ std::vector<double> yearsOf(const Arguments& arguments) {
     good = good && (numbers.size() == 1 || numbers.size() == 3);
     if (good && numbers.size() == 1)
         good = numbers[0] > 0.0;
+    if (good && numbers.size() == 3 && numbers[1] < numbers[0])
+        throw Error(ExitCode::commandLine, "--years",
+                    fmt::format("'{}' runs backwards: year {:g} comes before year {:g}", arguments.years, numbers[1],
+                                numbers[0]),
+                    "first:last:step, as in --years 0:30:5");
     if (good && numbers.size() == 3)
-        good = numbers[1] >= numbers[0] && numbers[2] > 0.0;
+        good = numbers[2] > 0.0;
     if (!good)
         throw Error(ExitCode::commandLine, "--years", fmt::format("'{}' is not a time", arguments.years),
                     "a number of years above 0, as in --years 30, or first:last:step, as in --years 0:30:5");
