@@ -230,9 +230,12 @@ class Checker {
             return false;
         }
         if (!curve.points.empty() && *year <= curve.points.back().first) {
+            const double before = curve.points.back().first;
             findings_.error(point.offset,
-                            fmt::format("the curve '{}' is not sorted: year {:g} stands behind year {:g}", curve.name,
-                                        *year, curve.points.back().first),
+                            *year == before
+                                ? fmt::format("the curve '{}' has two points at year {:g}", curve.name, *year)
+                                : fmt::format("the curve '{}' is not sorted: year {:g} stands behind year {:g}",
+                                              curve.name, *year, before),
                             "the years of a curve's points must increase");
             return false;
         }

@@ -367,7 +367,7 @@ TEST(Checker, drawsCurvesWithStraightLines) {
 
     EXPECT_THAT(firstError("curve c = (0, 0) (5, 1) (3, 2)"),
                 HasSubstr("2:25: the curve 'c' is not sorted: year 3 stands behind year 5"));
-    EXPECT_THAT(firstError("curve c = (0, 0) (0, 1)"), HasSubstr("2:18: the curve 'c' is not sorted"));
+    EXPECT_THAT(firstError("curve c = (0, 0) (0, 1)"), HasSubstr("2:18: the curve 'c' has two points at year 0"));
     EXPECT_THAT(firstError("curve c = (0, 0, 1)"), HasSubstr("2:11: a point of a curve has two numbers"));
     EXPECT_THAT(firstError("curve c = (0)"), HasSubstr("2:11: a point of a curve has two numbers"));
     EXPECT_THAT(firstError("curve c = (0, 0) (1, 1mm)"), HasSubstr("2:22: the values of a curve must be all lengths"));
