@@ -127,7 +127,7 @@ class TileBake {
 
     // Both sides of a seam show one height.
     void seamRow(int y) {
-        seams_.eachOfRow(tile_, y, [&](int x, double height) { rows_.putHeight(y, x, height); });
+        seams_.eachOfRow(tile_, y, [&](int x, double height, bool) { rows_.putHeight(y, x, height); });
     }
 
     // Texels beside a chart are read in the chart's frame.
@@ -212,13 +212,12 @@ class TileBake {
         return turned;
     }
 
-    // Whether the height jumps to a neighbour: by four times their distance (76 degrees) and more than half a voxel,
-    // which nothing that the lattice holds as one sheet does.
+    // Whether the height jumps to a neighbour.
     bool isWall(int y, int x, const UvDerivatives& uv) const {
-        const double own = rows_.height(y, x), least = 0.5 * sampler_.voxelSize() * heightUnits_;
+        const double own = rows_.height(y, x);
         const auto jumps = [&](int ny, int nx, const V3d& along) {
-            const double width = along.length() / texels_.size * heightUnits_;
-            return isSet(ny, nx) && std::abs(rows_.height(ny, nx) - own) > std::max(least, 4.0 * width);
+            return isSet(ny, nx) && std::abs(rows_.height(ny, nx) - own) >
+                                        wallHeight(along.length() / texels_.size, sampler_.voxelSize()) * heightUnits_;
         };
         return jumps(y, x - 1, uv.du) || jumps(y, x + 1, uv.du) || jumps(y - 1, x, uv.dv) || jumps(y + 1, x, uv.dv);
     }
@@ -236,6 +235,10 @@ class TileBake {
     }
 
     void normalRow(int y) {
+        seams_.eachOfRow(tile_, y, [&](int x, double, bool open) {
+            if (open)
+                rows_.putFold(y, x, 1.f);
+        });
         for (int x = 0; x < texels_.size; ++x)
             if (const SurfacePoint& point = pointOf(y, x); point.triangle >= 0) {
                 if (normalAtTexel(y, x, point, point))

@@ -1,6 +1,6 @@
 #include "export/seam_heights.h"
 
-#include "surface/uv_frame.h"
+#include "export/seam_pieces.h"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -8,82 +8,16 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 
 namespace patina {
 
-using Imath::V2d;
 using Imath::V2i;
 
 namespace {
 
-constexpr int sweeps = 64; // by then the jumps of scans change in their third digit only
-constexpr std::uint64_t noKey = ~std::uint64_t(0);
-
-// Reads of four texels on one side of a seam less those of four on the other.
-struct Equation {
-    std::array<std::uint64_t, 8> keys; // later: places in the list of unknowns
-    std::array<float, 8> weights;
-    float squared; // their squares' sum
-};
-
-float jumpOf(const Equation& equation, const std::vector<float>& heights) {
-    float sum = 0.f;
-    for (int i = 0; i < 8; ++i)
-        sum += equation.weights[i] * heights[equation.keys[i]];
-    return sum;
-}
-
-std::uint64_t keyOf(std::size_t tile, std::uint32_t texel) {
-    return std::uint64_t(tile) << 32 | texel;
-}
-
-void addRead(const V2d& place, int size, std::size_t tile, float sign, int first, Equation& equation) {
-    const int x0 = static_cast<int>(std::floor(place.x)), y0 = static_cast<int>(std::floor(place.y));
-    for (int i = 0; i < 4; ++i) {
-        const int x = std::clamp(x0 + i % 2, 0, size - 1), y = std::clamp(y0 + i / 2, 0, size - 1);
-        const double along = place.x - x0, down = place.y - y0;
-        const double weight = (i % 2 ? along : 1.0 - along) * (i / 2 ? down : 1.0 - down);
-        equation.keys[first + i] = keyOf(tile, static_cast<std::uint32_t>(static_cast<std::size_t>(y) * size + x));
-        equation.weights[first + i] = sign * static_cast<float>(weight);
-    }
-}
-
-std::vector<Equation> equationsOf(const SurfaceWalk& walk, const std::vector<V2i>& tiles, int size) {
-    const SurfaceMesh& surface = walk.surface();
-    const auto tileIndex = [&](int triangle) {
-        return static_cast<std::size_t>(std::find(tiles.begin(), tiles.end(), tileOf(surface, triangle)) -
-                                        tiles.begin());
-    };
-    std::vector<Equation> equations;
-    for (int t = 0; t < static_cast<int>(surface.triangleUvs.size()); ++t)
-        for (int edge = 0; edge < 3; ++edge) {
-            const int other = walk.behind(t, edge);
-            if (other < 3 * t + edge || !isSeam(walk, t, edge)) // none, or seen from there
-                continue;
-            const int there = other / 3;
-            const std::size_t tileHere = tileIndex(t), tileThere = tileIndex(there);
-            if (tileHere >= tiles.size() || tileThere >= tiles.size() || !uvDerivativesOf(surface, t).valid ||
-                !uvDerivativesOf(surface, there).valid)
-                continue;
-            const V2i &tileA = tiles[tileHere], &tileB = tiles[tileThere];
-            const V2d a0 = texelPlace(surface, t, edge, size, tileA);
-            const V2d a1 = texelPlace(surface, t, (edge + 1) % 3, size, tileA);
-            const V2d b1 = texelPlace(surface, there, other % 3, size, tileB);
-            const V2d b0 = texelPlace(surface, there, (other % 3 + 1) % 3, size, tileB);
-            const int points =
-                std::max(1, static_cast<int>(std::ceil(2.0 * std::max((a1 - a0).length(), (b1 - b0).length()))));
-            for (int i = 0; i < points; ++i) {
-                const double s = (i + 0.5) / points;
-                Equation equation;
-                addRead(a0 + (a1 - a0) * s, size, tileHere, 1.f, 0, equation);
-                addRead(b0 + (b1 - b0) * s, size, tileThere, -1.f, 4, equation);
-                equations.push_back(equation);
-            }
-        }
-    return equations;
-}
+constexpr double allowed = 0.01; // jump, voxels
+constexpr int wallSweeps = 32, mostSweeps = 500;
 
 // The point that a texel shows; nullopt beyond the rim.
 std::optional<SurfacePoint> shownAt(const TexelMap& map, std::uint32_t texel) {
@@ -96,16 +30,108 @@ std::optional<SurfacePoint> shownAt(const TexelMap& map, std::uint32_t texel) {
     return std::nullopt;
 }
 
+// Moves the texels of a piece by as little as takes its jumps away: x -= A^T (A A^T + c)^-1 A x, A the weights at its
+// start, in its middle and at its end. In short pieces these are nearly the same, whence c, with which most pieces hold
+// after the fewest sweeps.
+void level(const SeamPiece& piece, std::vector<float>& heights) {
+    constexpr double damping = 0.1;
+    const std::array<std::array<float, 8>, 3> weights = {piece.weights(0), piece.weights(1), piece.weights(2)};
+    double matrix[3][3], moves[3];
+    for (int i = 0; i < 3; ++i) {
+        moves[i] = 0.0;
+        for (int k = 0; k < 8; ++k)
+            moves[i] += double(weights[i][k]) * heights[piece.texels[k]];
+        for (int j = 0; j < 3; ++j) {
+            matrix[i][j] = i == j ? damping : 0.0;
+            for (int k = 0; k < 8; ++k)
+                matrix[i][j] += double(weights[i][k]) * weights[j][k];
+        }
+    }
+    // Symmetric and positive: elimination needs no pivots.
+    for (int i = 0; i < 3; ++i)
+        for (int j = i + 1; j < 3; ++j) {
+            const double factor = matrix[j][i] / matrix[i][i];
+            for (int k = i; k < 3; ++k)
+                matrix[j][k] -= factor * matrix[i][k];
+            moves[j] -= factor * moves[i];
+        }
+    for (int i = 2; i >= 0; --i) {
+        for (int j = i + 1; j < 3; ++j)
+            moves[i] -= matrix[i][j] * moves[j];
+        moves[i] /= matrix[i][i];
+    }
+    for (int k = 0; k < 8; ++k)
+        heights[piece.texels[k]] -= static_cast<float>(moves[0] * weights[0][k] + moves[1] * weights[1][k] +
+                                                       moves[2] * weights[2][k]);
+}
+
+// Which pieces read a texel.
+struct Readers {
+    std::vector<std::uint32_t> first, pieces; // of texel i: pieces[first[i]] … pieces[first[i + 1] - 1]
+
+    Readers(const std::vector<SeamPiece>& all, std::size_t texels) : first(texels + 1), pieces(all.size() * 8) {
+        for (const SeamPiece& piece : all)
+            for (const std::uint64_t texel : piece.texels)
+                ++first[texel];
+        std::uint32_t sum = 0;
+        for (std::uint32_t& count : first)
+            count = sum += count;
+        for (std::size_t p = all.size(); p-- > 0;)
+            for (const std::uint64_t texel : all[p].texels)
+                pieces[--first[texel]] = static_cast<std::uint32_t>(p);
+    }
+};
+
+// Levels pieces until none jumps by more than `bound`, at most sweeps[p] times round.
+void levelAll(const std::vector<SeamPiece>& pieces, const std::vector<short>& sweeps, float bound,
+              std::vector<float>& heights) {
+    const Readers readers(pieces, heights.size());
+    std::vector<std::uint32_t> asked, next;
+    for (std::size_t p = 0; p < pieces.size(); ++p)
+        if (sweeps[p] > 0)
+            asked.push_back(static_cast<std::uint32_t>(p));
+    std::vector<char> jumps, isNext(pieces.size());
+    for (int sweep = 0; !asked.empty(); ++sweep) {
+        jumps.resize(asked.size());
+        tbb::parallel_for(std::size_t(0), asked.size(), [&](std::size_t i) {
+            jumps[i] = sweep < sweeps[asked[i]] && pieces[asked[i]].largestJump(heights) > bound;
+        });
+        // One after the other, so that the order and with it every bit is the same on any number of threads. Asked again
+        // is what reads texels that were moved.
+        next.clear();
+        for (std::size_t i = 0; i < asked.size(); ++i) {
+            if (!jumps[i])
+                continue;
+            const SeamPiece& piece = pieces[asked[i]];
+            level(piece, heights);
+            for (const std::uint64_t texel : piece.texels)
+                for (std::uint32_t r = readers.first[texel]; r < readers.first[texel + 1]; ++r) {
+                    const std::uint32_t reader = readers.pieces[r];
+                    if (!isNext[reader] && sweeps[reader] > sweep + 1) {
+                        isNext[reader] = 1;
+                        next.push_back(reader);
+                    }
+                }
+        }
+        asked.swap(next);
+        for (const std::uint32_t p : asked)
+            isNext[p] = 0;
+        tbb::parallel_sort(asked.begin(), asked.end());
+    }
+}
+
 } // namespace
 
 SeamHeights::SeamHeights(const SurfaceWalk& walk, const TexelSampler& sampler,
                          const std::vector<std::uint8_t>& pointsAcross, const std::vector<V2i>& tiles,
                          const TexelMap& map, int gutterTexels) {
     size_ = static_cast<std::uint64_t>(map.size);
-    std::vector<Equation> equations = equationsOf(walk, tiles, map.size);
-    keys_.reserve(equations.size() * 8);
-    for (const Equation& equation : equations)
-        keys_.insert(keys_.end(), equation.keys.begin(), equation.keys.end());
+    if (map.size < 2)
+        return;
+    std::vector<SeamPiece> pieces = seamPieces(walk, tiles, map.size, sampler.voxelSize());
+    keys_.reserve(pieces.size() * 8);
+    for (const SeamPiece& piece : pieces)
+        keys_.insert(keys_.end(), piece.texels.begin(), piece.texels.end());
     tbb::parallel_sort(keys_.begin(), keys_.end());
     keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
     keys_.shrink_to_fit();
@@ -114,10 +140,10 @@ SeamHeights::SeamHeights(const SurfaceWalk& walk, const TexelSampler& sampler,
     std::vector<char> known(keys_.size());
     tbb::enumerable_thread_specific<TexelSampler::Scratch> scratch;
     for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
-        const auto first =
-            static_cast<std::size_t>(std::lower_bound(keys_.begin(), keys_.end(), keyOf(tile, 0)) - keys_.begin());
-        const auto last =
-            static_cast<std::size_t>(std::lower_bound(keys_.begin(), keys_.end(), keyOf(tile + 1, 0)) - keys_.begin());
+        const auto placeOf = [&](std::uint64_t key) {
+            return static_cast<std::size_t>(std::lower_bound(keys_.begin(), keys_.end(), key) - keys_.begin());
+        };
+        const std::size_t first = placeOf(seamKey(tile, 0)), last = placeOf(seamKey(tile + 1, 0));
         if (first == last)
             continue;
         TexelMap made;
@@ -133,46 +159,40 @@ SeamHeights::SeamHeights(const SurfaceWalk& walk, const TexelSampler& sampler,
         });
     }
 
-    // Places in the list instead of keys; what cannot be told is left out.
-    const float apart = static_cast<float>(sampler.voxelSize());
-    tbb::parallel_for(std::size_t(0), equations.size(), [&](std::size_t e) {
-        Equation& equation = equations[e];
+    // Places in the list instead of keys. What jumps by a voxel or cannot be told stays as it is.
+    const auto voxel = static_cast<float>(sampler.voxelSize());
+    std::vector<short> sweeps(pieces.size());
+    std::vector<char> isOpen(pieces.size());
+    tbb::parallel_for(std::size_t(0), pieces.size(), [&](std::size_t p) {
         bool whole = true;
-        for (auto& key : equation.keys) {
-            key = static_cast<std::uint64_t>(std::lower_bound(keys_.begin(), keys_.end(), key) - keys_.begin());
-            whole = whole && known[key];
+        for (std::uint64_t& texel : pieces[p].texels) {
+            texel = static_cast<std::uint64_t>(std::lower_bound(keys_.begin(), keys_.end(), texel) - keys_.begin());
+            whole = whole && known[texel];
         }
-        equation.squared = 0.f;
-        for (const float weight : equation.weights)
-            equation.squared += weight * weight;
-        if (!whole || !(std::abs(jumpOf(equation, heights_)) < apart))
-            equation.keys[0] = noKey;
+        isOpen[p] = whole && pieces[p].crossesWall(heights_);
+        if (whole && pieces[p].largestJump(heights_) < voxel)
+            sweeps[p] = isOpen[p] ? wallSweeps : mostSweeps;
     });
-    equations.erase(
-        std::remove_if(equations.begin(), equations.end(), [](const Equation& e) { return e.keys[0] == noKey; }),
-        equations.end());
+    const float bound = static_cast<float>(allowed) * voxel;
+    levelAll(pieces, sweeps, bound, heights_);
 
-    const auto project = [&](const Equation& equation) {
-        const float step = jumpOf(equation, heights_) / equation.squared;
-        for (int i = 0; i < 8; ++i)
-            heights_[equation.keys[i]] -= step * equation.weights[i];
-    };
-    // One after the other, so that the order and with it every bit is the same on any number of threads.
-    for (int sweep = 0; sweep < sweeps; ++sweep)
-        if (sweep % 2 == 0)
-            std::for_each(equations.begin(), equations.end(), project);
-        else
-            std::for_each(equations.rbegin(), equations.rend(), project);
+    open_.assign(keys_.size(), 0);
+    for (std::size_t p = 0; p < pieces.size(); ++p)
+        if (isOpen[p] || pieces[p].largestJump(heights_) > bound)
+            for (const std::uint64_t texel : pieces[p].texels)
+                open_[texel] = 1;
 
     // Beyond the rim nothing was read.
     std::size_t kept = 0;
     for (std::size_t i = 0; i < keys_.size(); ++i)
         if (known[i]) {
             keys_[kept] = keys_[i];
-            heights_[kept++] = heights_[i];
+            heights_[kept] = heights_[i];
+            open_[kept++] = open_[i];
         }
     keys_.resize(kept);
     heights_.resize(kept);
+    open_.resize(kept);
 }
 
 } // namespace patina

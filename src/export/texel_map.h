@@ -4,6 +4,7 @@
 #include "surface/mesh.h"
 #include "surface/surface_walk.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -60,6 +61,10 @@ void addGutter(const SurfaceWalk& walk, int gutterTexels, TexelMap& map);
 
 /// Whether the triangle behind an edge (SurfaceWalk::behind) lies elsewhere in the UVs.
 bool isSeam(const SurfaceWalk& walk, int triangle, int edge);
+
+/// The height from a texel to the next that is a wall: four times their distance (76 degrees) and more than half a voxel,
+/// which nothing that the lattice holds as one sheet rises. \param distance  of the texels, in the voxel's unit
+inline double wallHeight(double distance, double voxelSize) { return std::max(0.5 * voxelSize, 4.0 * distance); }
 
 /// UV of a corner in texels from the first texel's centre, y downwards.
 Imath::V2d texelPlace(const SurfaceMesh& surface, int triangle, int corner, int size, const Imath::V2i& tile);

@@ -12,7 +12,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <utility>
+#include <vector>
 
 namespace patina::test {
 
@@ -21,9 +24,14 @@ struct Measured {
     DisplacedDistance displaced, undisplaced;
     DisplacedDistance otherSpace; ///< vectors of a space of the surface's taken for the object's
     double foldFraction = 0.0;
-    std::vector<double> seams; ///< jumps of the height across UV seams, voxels, sorted
+    std::vector<double> seams;       ///< jumps of the height across UV seams, voxels, sorted
+    std::vector<double> foldedSeams; ///< the same under the fold mask
 
-    double seamsUnder(double share) const { return seams[static_cast<std::size_t>(share * double(seams.size() - 1))]; }
+    /// Of the points under the fold mask, those where the jump is larger than is asked elsewhere.
+    double openFoldedShare() const {
+        const auto first = std::upper_bound(foldedSeams.begin(), foldedSeams.end(), 0.02);
+        return double(foldedSeams.end() - first) / double(std::max<std::size_t>(1, foldedSeams.size()));
+    }
 };
 
 inline Measured measure(Mesh mesh, int voxels, int resolution, int dice, bool atlas, bool vectors = false,
@@ -68,13 +76,20 @@ inline Measured measure(Mesh mesh, int voxels, int resolution, int dice, bool at
     std::fill(zero.floats.begin(), zero.floats.end(), 0.f);
     measured.undisplaced = measureDisplaced(*piece->volume, piece->surface, zero, *maps.find("fold_mask"), 1);
     if (!vectors) {
-        measured.seams = seamJumps(piece->surface, *maps.find("displacement"), *maps.find("fold_mask"), 3);
-        for (double& jump : measured.seams)
-            jump /= scale.voxelSize;
-        if (!measured.seams.empty())
-            std::printf("seams: %zu points, jumps: 99 %% under %.4f, 99.9 %% under %.4f, max %.4f voxel\n",
-                        measured.seams.size(), measured.seamsUnder(0.99), measured.seamsUnder(0.999),
-                        measured.seams.back());
+        SeamJumps jumps = seamJumps(piece->surface, *maps.find("displacement"), *maps.find("fold_mask"), 13);
+        measured.seams = std::move(jumps.open);
+        measured.foldedSeams = std::move(jumps.folded);
+        for (auto* seams : {&measured.seams, &measured.foldedSeams})
+            for (double& jump : *seams)
+                jump /= scale.voxelSize;
+        const auto under = [](const std::vector<double>& seams, double share) {
+            return seams.empty() ? 0.0 : seams[static_cast<std::size_t>(share * double(seams.size() - 1))];
+        };
+        for (const auto& [name, seams] : {std::pair{"seams", &measured.seams}, {"  under the fold mask", &measured.foldedSeams}})
+            std::printf("%s: %zu points, jumps: 90 %% under %.4f, 99 %% under %.4f, 99.9 %% under %.4f, max %.4f voxel\n",
+                        name, seams->size(), under(*seams, 0.9), under(*seams, 0.99), under(*seams, 0.999),
+                        under(*seams, 1.0));
+        std::printf("  of those %.2f %% above 0.02\n", 100.0 * measured.openFoldedShare());
     }
     const auto print = [](const char* name, const DistanceFigures& figures) {
         std::printf("%s: %zu points, %zu masked: rms %.4f, 99.9 %% under %.4f, max %.4f voxel\n", name, figures.points,

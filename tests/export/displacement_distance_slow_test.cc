@@ -21,8 +21,10 @@ TEST(DisplacementDistance, TheDisplacedScanOfTheBuddhaIsTheVoxelSurface) {
     EXPECT_LT(measured.displaced.meshAsItIs.rms, 0.05);
     EXPECT_LT(measured.displaced.meshAsItIs.p999, 0.4);
     ASSERT_GT(measured.seams.size(), 10000u);
-    EXPECT_LT(measured.seamsUnder(0.999), 0.02);
-    EXPECT_LT(measured.seams.back(), 0.05); // 0.038 at single points
+    EXPECT_LT(measured.seams.back(), 0.02);
+    // Under the mask, at walls, a height map cannot close all of them.
+    ASSERT_GT(measured.foldedSeams.size(), 10000u);
+    EXPECT_LT(measured.openFoldedShare(), 0.05);
     // A coat of 4 to 8 voxels is wider than many of the statue's creases: an eighth of it is folds, which are left out.
     EXPECT_LT(measured.foldFraction, 0.14);
     EXPECT_LT(measured.displaced.meshToVolume.maskedShare(), 0.16);
@@ -38,7 +40,7 @@ TEST(DisplacementDistance, AScanWithoutUvsIsTheVoxelSurfaceThroughItsCharts) {
     const test::Measured measured = test::measure(std::move(mesh), 160, 2048, 3, false);
     test::expectControl(measured);
     // A coat of 4 to 8 voxels on 160 leaves little beside folds, and texels of half a voxel. Measured: 0.035 and 0.25, at
-    // most 0.66, from the mesh, 0.037, 0.27 and 0.82 to it; seams 0.009, 0.020 at 99.9 % and at most 0.039.
+    // most 0.66, from the mesh, 0.037, 0.27 and 0.82 to it.
     for (const auto& figures : {measured.displaced.meshToVolume, measured.displaced.volumeToMesh}) {
         EXPECT_GT(figures.points, 20000u);
         EXPECT_LT(figures.rms, 0.05);
@@ -46,8 +48,7 @@ TEST(DisplacementDistance, AScanWithoutUvsIsTheVoxelSurfaceThroughItsCharts) {
         EXPECT_LT(figures.max, 1.0);
     }
     ASSERT_GT(measured.seams.size(), 1000u);
-    EXPECT_LT(measured.seamsUnder(0.99), 0.02);
-    EXPECT_LT(measured.seams.back(), 0.05);
+    EXPECT_LT(measured.seams.back(), 0.02);
 }
 
 TEST(DisplacementDistance, TheDisplacedCageOfSpotWithItsOwnUvsIsTheVoxelSurface) {
