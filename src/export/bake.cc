@@ -26,9 +26,12 @@ namespace {
 
 // A multiple of the 16 rows that EXR's ZIP packs together, and as many as the widest gutter.
 constexpr int bandRows = 32;
-// From the band whose texels are read to the one that is written: refined, normals, gutter; and one behind it, which
-// gutters still copy from.
-constexpr int bandsHeld = 5;
+// A band's stages, in order: texels are read, refined, get their normals, gutters, and go out. Refining, normals and
+// gutters look into the bands beside theirs, so that each stage is two bands behind the one before; then all of them can
+// go side by side.
+constexpr int refineDelay = 2, normalDelay = 4, gutterDelay = 6, writeDelay = 7;
+// Gutters still copy from the band that goes out.
+constexpr int bandsHeld = writeDelay + 1;
 
 // Per row, then over the rows in order: the sums do not depend on the threads.
 struct RowSums {
@@ -39,8 +42,7 @@ struct RowSums {
     V3d colour{0.0};
 };
 
-/// One tile, band by band. A band goes through four stages, each of which needs the one before to be done in the bands
-/// beside it.
+/// One tile, band by band.
 class TileBake {
   public:
     TileBake(const SurfaceWalk& walk, const TexelSampler& sampler, const TangentFrames& frames,
@@ -53,17 +55,29 @@ class TileBake {
     void run(MapSink& sink, Progress& progress, double done, double share) {
         const int size = texels_.size, bands = (size + bandRows - 1) / bandRows;
         const int maps = static_cast<int>(rows_.maps().size());
-        for (int band = 0; band < bands + 3; ++band) {
+        for (int band = 0; band < bands + writeDelay; ++band) {
             progress.checkpoint();
-            eachRow(band, bands, [&](int y) { readRow(y); });
-            eachRow(band - 1, bands, [&](int y) { refineRow(y); });
-            eachRow(band - 2, bands, [&](int y) { normalRow(y); });
-            eachRow(band - 3, bands, [&](int y) { gutterRow(y); });
-            if (const int first = (band - 3) * bandRows; first >= 0)
-                tbb::parallel_for(
-                    0, maps, [&](int m) { sink.write(m, rows_.row(m, first), std::min(bandRows, size - first)); },
-                    tbb::simple_partitioner());
-            progress.update(done + share * (band + 1) / (bands + 3));
+            const int toWrite = (band - writeDelay) * bandRows;
+            tbb::parallel_for(
+                0, maps + 4 * bandRows,
+                [&](int i) {
+                    if (i < maps) {
+                        if (toWrite >= 0)
+                            sink.write(i, rows_.row(i, toWrite), std::min(bandRows, size - toWrite));
+                        return;
+                    }
+                    const int stage = (i - maps) / bandRows, row = (i - maps) % bandRows;
+                    if (stage == 0)
+                        rowOf(band, row, [&](int y) { readRow(y); });
+                    else if (stage == 1)
+                        rowOf(band - refineDelay, row, [&](int y) { refineRow(y); });
+                    else if (stage == 2)
+                        rowOf(band - normalDelay, row, [&](int y) { normalRow(y); });
+                    else
+                        rowOf(band - gutterDelay, row, [&](int y) { gutterRow(y); });
+                },
+                tbb::simple_partitioner());
+            progress.update(done + share * (band + 1) / (bands + writeDelay));
         }
     }
 
@@ -76,10 +90,12 @@ class TileBake {
         TexelValues values;
     };
 
-    template <typename Row>
-    void eachRow(int band, int bands, const Row& row) {
-        if (band >= 0 && band < bands)
-            tbb::parallel_for(band * bandRows, std::min(texels_.size, (band + 1) * bandRows), row);
+    // Row `row` of a band, if there is one.
+    template <typename Use>
+    void rowOf(int band, int row, const Use& use) {
+        const int y = band * bandRows + row;
+        if (band >= 0 && y < texels_.size)
+            use(y);
     }
     const SurfacePoint& pointOf(int y, int x) const {
         return texels_.points[static_cast<std::size_t>(y) * texels_.size + x];

@@ -87,15 +87,22 @@ int BakeRows::add(const std::string& name, int channels, bool isColour, bool isH
 }
 
 void BakeRows::set(int map, std::size_t texel, double value) {
-    if (infos_[map].isHalf)
-        halves_[map][texel] = Imath::half(static_cast<float>(value));
-    else
+    if (halves_[map].empty())
         floats_[map][texel] = static_cast<float>(value);
+    else
+        halves_[map][texel] = Imath::half(static_cast<float>(value));
 }
 
 void BakeRows::set(int map, std::size_t texel, const V3d& value) {
+    if (halves_[map].empty()) {
+        float* pixel = floats_[map].data() + texel * 3;
+        for (int c = 0; c < 3; ++c)
+            pixel[c] = static_cast<float>(value[c]);
+        return;
+    }
+    Imath::half* pixel = halves_[map].data() + texel * 3;
     for (int c = 0; c < 3; ++c)
-        set(map, texel * 3 + c, value[c]);
+        pixel[c] = Imath::half(static_cast<float>(value[c]));
 }
 
 void BakeRows::clearRow(int y) {
@@ -155,13 +162,12 @@ void BakeRows::putNormal(int y, int x, const V3f& encoded) { set(normal_, at(y, 
 
 void BakeRows::copyTexel(int toY, int toX, int fromY, int fromX) {
     const std::size_t to = at(toY, toX), from = at(fromY, fromX);
-    for (std::size_t m = 0; m < infos_.size(); ++m) {
-        const int channels = infos_[m].channels;
-        for (int c = 0; c < channels; ++c)
-            if (infos_[m].isHalf)
-                halves_[m][to * channels + c] = halves_[m][from * channels + c];
-            else
-                floats_[m][to * channels + c] = floats_[m][from * channels + c];
+    for (std::size_t m = 0; m < halves_.size(); ++m) {
+        const auto copy = [&](auto& pixels) {
+            const auto channels = static_cast<std::size_t>(infos_[m].channels);
+            std::copy_n(pixels.begin() + from * channels, channels, pixels.begin() + to * channels);
+        };
+        halves_[m].empty() ? copy(floats_[m]) : copy(halves_[m]);
     }
 }
 

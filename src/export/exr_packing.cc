@@ -23,7 +23,7 @@ struct FreeCompressor {
 
 struct ExrPacking::Buffers {
     std::unique_ptr<libdeflate_compressor, FreeCompressor> compressor{libdeflate_alloc_compressor(level)};
-    std::vector<std::uint8_t> split, packed;
+    std::vector<std::uint8_t> split, differences, packed;
 };
 
 ExrPacking::ExrPacking() : buffers_(new Buffers) {}
@@ -36,17 +36,25 @@ exr_result_t ExrPacking::pack(exr_encode_pipeline_t& pipeline) {
     if (!b.compressor)
         return EXR_ERR_OUT_OF_MEMORY;
     // The format's predictor: even bytes before odd ones, then each as its difference from the one before, plus 128.
-    b.split.resize(bytes);
     const std::size_t half = (bytes + 1) / 2;
-    for (std::size_t i = 0; i < half; ++i)
-        b.split[i] = samples[2 * i];
-    for (std::size_t i = half; i < bytes; ++i)
-        b.split[i] = samples[2 * (i - half) + 1];
-    for (std::size_t i = bytes; i-- > 1;)
-        b.split[i] = static_cast<std::uint8_t>(b.split[i] - b.split[i - 1] + 128);
+    b.split.resize(bytes);
+    b.differences.resize(bytes);
+    std::uint8_t *even = b.split.data(), *odd = even + half;
+    for (std::size_t i = 0; i < bytes / 2; ++i) {
+        even[i] = samples[2 * i];
+        odd[i] = samples[2 * i + 1];
+    }
+    if (bytes % 2 != 0)
+        even[half - 1] = samples[bytes - 1];
+    const std::uint8_t* split = b.split.data();
+    std::uint8_t* differences = b.differences.data();
+    if (bytes > 0)
+        differences[0] = split[0];
+    for (std::size_t i = 1; i < bytes; ++i)
+        differences[i] = static_cast<std::uint8_t>(split[i] - split[i - 1] + 128);
     b.packed.resize(bytes);
     std::size_t size =
-        bytes > 0 ? libdeflate_zlib_compress(b.compressor.get(), b.split.data(), bytes, b.packed.data(), bytes) : 0;
+        bytes > 0 ? libdeflate_zlib_compress(b.compressor.get(), differences, bytes, b.packed.data(), bytes) : 0;
     // Where nothing is gained (0: it did not fit) readers expect the samples as they are.
     if (size == 0 || size >= bytes) {
         std::memcpy(b.packed.data(), samples, bytes);

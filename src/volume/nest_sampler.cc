@@ -87,6 +87,21 @@ NestCell NestSampler::locate(const Imath::V3d& point) const {
     return cell;
 }
 
+const NestCell& NestSampler::follow(const Imath::V3d& point, NestPlace& place) const {
+    const Imath::V3d lower(floorOf(point.x), floorOf(point.y), floorOf(point.z));
+    const Imath::V3i whole(lower);
+    // At a region's sides cells end.
+    if (whole == place.lower && sides_.empty()) {
+        place.cell.x = point.x - lower.x;
+        place.cell.y = point.y - lower.y;
+        place.cell.z = point.z - lower.z;
+    } else {
+        place.cell = locate(point);
+        place.lower = whole;
+    }
+    return place.cell;
+}
+
 void NestSampler::corners(int k, const NestCell& cell, double* c) const {
     const auto& buffers = buffers_[k];
     const int first = cell.voxel[0];

@@ -8,6 +8,8 @@
 #include <Imath/ImathVec.h>
 
 #include <array>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace patina {
@@ -17,6 +19,12 @@ struct NestCell {
     std::array<std::int32_t, 8> leaf; ///< leaf index, or -1 outside, -2 inside the band's far sides
     std::array<std::int16_t, 8> voxel;
     double x, y, z; ///< 0…1 within the cell (beyond a region's sides -2…3)
+};
+
+/// A cell and where it lies, for points that move little: NestSampler::follow().
+struct NestPlace {
+    NestCell cell{};
+    Imath::V3i lower{std::numeric_limits<int>::min()}; ///< the cell's lower corner, voxels; at first none
 };
 
 /// A read-only view of a volume; valid while its grids are neither moved nor re-allocated. Safe from any thread.
@@ -32,6 +40,9 @@ class NestSampler {
     /// The cell around a point given in voxels. Of a region: the nearest cell within its sides, carried on linearly for
     /// up to two voxels.
     NestCell locate(const Imath::V3d& point) const;
+
+    /// locate(), by a place that was found for another point: a cell is looked up where the point has left the last one.
+    const NestCell& follow(const Imath::V3d& point, NestPlace& place) const;
 
     /// Where a voxel stands, in voxels.
     Imath::V3d position(const openvdb::Coord& index) const { return space_.position(index); }

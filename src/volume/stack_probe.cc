@@ -44,34 +44,42 @@ struct StackProbe::Nest {
     double depth; ///< voxels inside the base where eroded metal may end
     bool porous;  ///< whether a line may cross an interface more than once
 
+    // A line that is read at one place after another, most of them in the same cell.
+    struct Line {
+        Imath::V3d origin, direction;
+        NestPlace place{};
+
+        Imath::V3d at(double s) const { return origin + direction * s; }
+    };
+
     // phi_k along the line, in voxels (phi / voxelSize), and its slope.
-    double along(int k, const Imath::V3d& origin, const Imath::V3d& direction, double s, double& slope) const {
+    double along(int k, Line& line, double s, double& slope) const {
         Imath::V3d gradient;
-        const double phi = sampler.valueAndGradient(k, sampler.locate(origin + direction * s), gradient);
-        slope = gradient.dot(direction) / scale.voxelSize;
+        const double phi = sampler.valueAndGradient(k, sampler.follow(line.at(s), line.place), gradient);
+        slope = gradient.dot(line.direction) / scale.voxelSize;
         return phi / scale.voxelSize;
     }
 
     // How far from the base a crossing s along the line is. Within a voxel phi_0 itself says it, a true distance whatever
     // its trilinear slope beside an edge, and whatever the angle between the line and the voxels' normal; from two voxels
     // on it is the way along the line, which a crease's other side does not shorten.
-    double distanceFromBase(const Imath::V3d& origin, const Imath::V3d& direction, double base, double s) const {
+    double distanceFromBase(Line& line, double base, double s) const {
         const double along = s - base, share = std::clamp(2.0 - std::abs(along), 0.0, 1.0);
         if (share == 0.0)
             return along;
         const double near = std::clamp(along, -1.0, 1.0);
-        const Imath::V3d at = origin + direction * (base + near);
-        const double away = sampler.value(sampler.reference(), sampler.locate(at)) / scale.voxelSize;
+        const NestCell& cell = sampler.follow(line.at(base + near), line.place);
+        const double away = sampler.value(sampler.reference(), cell) / scale.voxelSize;
         return along + share * (away - near);
     }
 
     // The first outward crossing of phi_k in [from, to], phi_k(from) <= 0 assumed; `to` where there is none. A line
     // that meets the metal again before it is out of the layer (a crease filled to the brim) crosses there. Newton with
     // a bracket: along a line the trilinear field is a cubic within each cell and kinked between cells.
-    double crossing(int k, const Imath::V3d& origin, const Imath::V3d& direction, double from, double to) const {
+    double crossing(int k, Line& line, double from, double to) const {
         double slope = 0.0;
         double low = from;
-        double f = along(k, origin, direction, from, slope);
+        double f = along(k, line, from, slope);
         if (f >= 0.0)
             return from;
         double high = to;
@@ -91,18 +99,18 @@ struct StackProbe::Nest {
                 return next;
             const double before = s;
             s = next;
-            f = along(k, origin, direction, s, slope);
+            f = along(k, line, s, slope);
             if (k > 0 && !bracketed && f < 0.0) {
                 double ignored;
-                if (along(0, origin, direction, s, ignored) < 0.0) {
+                if (along(0, line, s, ignored) < 0.0) {
                     // In metal again: was there air on the way, in a gap narrower than the step?
                     const double step = s - before;
                     for (int i = 1; i < 8 && f < 0.0; ++i) {
                         s = before + step * i / 8.0;
-                        f = along(k, origin, direction, s, slope);
+                        f = along(k, line, s, slope);
                     }
                     if (f < 0.0)
-                        return metalBetween(origin, direction, before, before + step);
+                        return metalBetween(line, before, before + step);
                 }
             }
             if (f == 0.0)
@@ -122,23 +130,22 @@ struct StackProbe::Nest {
     }
 
     // Where phi_0 falls below 0 between `outside` and `inside`.
-    double metalBetween(const Imath::V3d& origin, const Imath::V3d& direction, double outside, double inside) const {
+    double metalBetween(Line& line, double outside, double inside) const {
         double slope;
         for (int i = 0; i < 40; ++i) {
             const double middle = 0.5 * (outside + inside);
-            (along(0, origin, direction, middle, slope) < 0.0 ? inside : outside) = middle;
+            (along(0, line, middle, slope) < 0.0 ? inside : outside) = middle;
         }
         return outside;
     }
 
     // Of layers with pores and overhangs: how much of the line from `floor` outward lies within each layer, voxels, and
     // where it leaves the outermost one for good. The line ends where it comes nearer to another part of the model.
-    double solidLengths(const Imath::V3d& origin, const Imath::V3d& direction, double floor, double end,
-                        double* lengths) const {
+    double solidLengths(Line& line, double floor, double end, double* lengths) const {
         const auto count = static_cast<std::size_t>(layers) + 1;
         std::vector<double> before(count), now(count), inside(count, 0.0);
         const auto read = [&](double s, std::vector<double>& phi) {
-            const NestCell cell = sampler.locate(origin + direction * s);
+            const NestCell& cell = sampler.follow(line.at(s), line.place);
             for (std::size_t k = 0; k < count; ++k)
                 phi[k] = sampler.value(static_cast<int>(k), cell) / scale.voxelSize;
             return sampler.value(sampler.reference(), cell) / scale.voxelSize;
@@ -195,47 +202,47 @@ struct StackProbe::Nest {
 
     // Whether the line leaves the base at a grazing angle. A stack read along it would be thicker by 1 / cos: more than
     // three times where the model's smooth normal and the voxels disagree so much (a sharp crease, a thin edge).
-    bool grazes(const Imath::V3d& origin, const Imath::V3d& direction, double s) const {
+    bool grazes(Line& line, double s) const {
         Imath::V3d gradient;
-        sampler.valueAndGradient(sampler.reference(), sampler.locate(origin + direction * s), gradient);
-        return gradient.dot(direction) < 0.3 * gradient.length();
+        sampler.valueAndGradient(sampler.reference(), sampler.follow(line.at(s), line.place), gradient);
+        return gradient.dot(line.direction) < 0.3 * gradient.length();
     }
 
     // Where the base crosses the line within 2 voxels of its origin; a value of 2 or more where it does not.
-    double baseCrossing(const Imath::V3d& origin, const Imath::V3d& direction) const {
+    double baseCrossing(Line& line) const {
         // Inward until inside (the base lies within the voxelisation error of the point), then outward to the crossing.
         const int base = sampler.reference();
         double slope = 0.0;
         double start = 0.0;
-        double f = along(base, origin, direction, start, slope);
+        double f = along(base, line, start, slope);
         while (f > 0.0 && start > -2.0) {
             start -= std::clamp(f * 1.5, 0.02, 0.5);
-            f = along(base, origin, direction, start, slope);
+            f = along(base, line, start, slope);
         }
-        return f > 0.0 ? 2.0 : crossing(base, origin, direction, start, 2.0);
+        return f > 0.0 ? 2.0 : crossing(base, line, start, 2.0);
     }
 
     // Where what is left of the metal crosses the line, at or below the base's crossing. Where the metal is eaten
     // through, as deep as the line comes: half way to the other side, or the band's inner edge.
-    double floorCrossing(const Imath::V3d& origin, const Imath::V3d& direction, double base) const {
+    double floorCrossing(Line& line, double base) const {
         if (sampler.reference() == 0)
             return base;
         double slope = 0.0;
         double s = base;
-        double f = along(0, origin, direction, s, slope);
-        double deepest = along(sampler.reference(), origin, direction, s, slope);
+        double f = along(0, line, s, slope);
+        double deepest = along(sampler.reference(), line, s, slope);
         // Where the line grazes a wall, as it does under the edge of a sheet, steps by the distance would be endless.
         constexpr double touches = 1e-6, leastStep = 0.05;
         while (f > touches && s > base - depth) {
             const double next = s - std::clamp(f, leastStep, 0.5);
-            const double original = along(sampler.reference(), origin, direction, next, slope);
+            const double original = along(sampler.reference(), line, next, slope);
             if (original > deepest + 1e-6)
                 return s;
             deepest = original;
             s = next;
-            f = along(0, origin, direction, s, slope);
+            f = along(0, line, s, slope);
         }
-        return f > 0.0 ? s : std::min(base, crossing(0, origin, direction, s, base));
+        return f > 0.0 ? s : std::min(base, crossing(0, line, s, base));
     }
 };
 
@@ -267,18 +274,17 @@ Imath::V3d StackProbe::reliefSlope(const Imath::V3d& point, const Imath::V3d& no
 StackProbe::Reading StackProbe::read(const Imath::V3d& point, const Imath::V3d& normal, double* thicknessUm) const {
     const Nest& nest = *nest_;
     const VolumeScale& scale = nest.scale;
-    Imath::V3d origin = point / scale.voxelSize;
-    Imath::V3d direction = normal;
+    Nest::Line line{point / scale.voxelSize, normal};
     Reading reading;
     std::fill(thicknessUm, thicknessUm + nest.layers, 0.0);
 
-    double below = nest.baseCrossing(origin, direction);
-    if (below >= 2.0 || nest.grazes(origin, direction, below)) {
+    double below = nest.baseCrossing(line);
+    if (below >= 2.0 || nest.grazes(line, below)) {
         if (below < 2.0)
-            origin += direction * below;
-        if (!nest.project(origin, direction))
+            line.origin = line.at(below);
+        if (!nest.project(line.origin, line.direction))
             return reading;
-        below = nest.baseCrossing(origin, direction);
+        below = nest.baseCrossing(line);
         if (below >= 2.0)
             return reading;
         reading.projected = true;
@@ -287,20 +293,20 @@ StackProbe::Reading StackProbe::read(const Imath::V3d& point, const Imath::V3d& 
     reading.baseOffset = below * scale.voxelSize;
     const double base = below;
     const double umPerVoxel = 1.0 / scale.voxelsPerUm();
-    below = nest.floorCrossing(origin, direction, base);
+    below = nest.floorCrossing(line, base);
     reading.metalHeight = (below - base) * scale.voxelSize;
     if (nest.porous) {
-        below = nest.solidLengths(origin, direction, below, base + nest.reach, thicknessUm);
+        below = nest.solidLengths(line, below, base + nest.reach, thicknessUm);
         for (int k = 0; k < nest.layers; ++k)
             thicknessUm[k] *= umPerVoxel;
         reading.height = (below - base) * scale.voxelSize;
         return reading;
     }
-    double distance = nest.distanceFromBase(origin, direction, base, below);
+    double distance = nest.distanceFromBase(line, base, below);
     for (int k = 1; k <= nest.layers; ++k) {
-        const double crossing = std::max(below, nest.crossing(k, origin, direction, below, base + nest.reach));
+        const double crossing = std::max(below, nest.crossing(k, line, below, base + nest.reach));
         if (crossing > below) {
-            const double next = nest.distanceFromBase(origin, direction, base, crossing);
+            const double next = nest.distanceFromBase(line, base, crossing);
             thicknessUm[k - 1] = std::max(0.0, next - distance) * umPerVoxel;
             distance = std::max(distance, next);
         }
