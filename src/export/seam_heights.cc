@@ -17,6 +17,9 @@ using Imath::V2i;
 namespace {
 
 constexpr double allowed = 0.01; // jump, voxels
+// How far a texel may be moved from what was read there, voxels. Where texels of very different shapes meet, as where UVs
+// are stretched, equal reads would ask for more than a voxel.
+constexpr double farthest = 0.15;
 constexpr int wallSweeps = 32, mostSweeps = 500;
 
 // The point that a texel shows; nullopt beyond the rim.
@@ -82,9 +85,11 @@ struct Readers {
     }
 };
 
-// Levels pieces until none jumps by more than `bound`, at most sweeps[p] times round.
+// Levels pieces until none jumps by more than `bound`, at most sweeps[p] times round; texels stay within `moves` of their
+// heights.
 void levelAll(const std::vector<SeamPiece>& pieces, const std::vector<short>& sweeps, float bound,
-              std::vector<float>& heights) {
+              const std::vector<float>& moves, std::vector<float>& heights) {
+    const std::vector<float> given = heights;
     const Readers readers(pieces, heights.size());
     std::vector<std::uint32_t> asked, next;
     for (std::size_t p = 0; p < pieces.size(); ++p)
@@ -104,7 +109,8 @@ void levelAll(const std::vector<SeamPiece>& pieces, const std::vector<short>& sw
                 continue;
             const SeamPiece& piece = pieces[asked[i]];
             level(piece, heights);
-            for (const std::uint64_t texel : piece.texels)
+            for (const std::uint64_t texel : piece.texels) {
+                heights[texel] = std::clamp(heights[texel], given[texel] - moves[texel], given[texel] + moves[texel]);
                 for (std::uint32_t r = readers.first[texel]; r < readers.first[texel + 1]; ++r) {
                     const std::uint32_t reader = readers.pieces[r];
                     if (!isNext[reader] && sweeps[reader] > sweep + 1) {
@@ -112,6 +118,7 @@ void levelAll(const std::vector<SeamPiece>& pieces, const std::vector<short>& sw
                         next.push_back(reader);
                     }
                 }
+            }
         }
         asked.swap(next);
         for (const std::uint32_t p : asked)
@@ -173,14 +180,23 @@ SeamHeights::SeamHeights(const SurfaceWalk& walk, const TexelSampler& sampler,
         if (whole && pieces[p].largestJump(heights_) < voxel)
             sweeps[p] = isOpen[p] ? wallSweeps : mostSweeps;
     });
-    const float bound = static_cast<float>(allowed) * voxel;
-    levelAll(pieces, sweeps, bound, heights_);
-
     open_.assign(keys_.size(), 0);
+    const auto markOpen = [&](const SeamPiece& piece) {
+        for (const std::uint64_t texel : piece.texels)
+            open_[texel] = 1;
+    };
     for (std::size_t p = 0; p < pieces.size(); ++p)
-        if (isOpen[p] || pieces[p].largestJump(heights_) > bound)
-            for (const std::uint64_t texel : pieces[p].texels)
-                open_[texel] = 1;
+        if (isOpen[p])
+            markOpen(pieces[p]);
+    // At walls, under the fold mask, closed seams are worth more than right heights.
+    std::vector<float> moves(keys_.size());
+    for (std::size_t i = 0; i < moves.size(); ++i)
+        moves[i] = open_[i] ? 1e3f * voxel : static_cast<float>(farthest) * voxel;
+    const float bound = static_cast<float>(allowed) * voxel;
+    levelAll(pieces, sweeps, bound, moves, heights_);
+    for (const SeamPiece& piece : pieces)
+        if (piece.largestJump(heights_) > bound)
+            markOpen(piece);
 
     // Beyond the rim nothing was read.
     std::size_t kept = 0;

@@ -16,9 +16,9 @@ namespace patina {
 /// bilinear read is off by an eighth of the squared texel times the curvature, differently on either side: the
 /// displaced mesh would open there. Along each piece of a seam (seam_pieces.h) the jump may be a hundredth of a voxel;
 /// where it is more, the eight texels are moved by the least that takes it away, piece by piece until all hold
-/// (projections on to convex sets, which have points in common: equal heights). So no point of a seam jumps by more
-/// than 0.0125 voxel, but at walls: where heights jump from texel to texel, as they end on different sheets, seams are
-/// closed as far as some dozens of rounds do, and the texels belong under the fold mask.
+/// (projections on to convex sets). So no point of a seam jumps by more than 0.0125 voxel, but where that would move a
+/// texel by more than 0.15 voxel (stretched UVs), and at walls: where heights jump from texel to texel, as they end on
+/// different sheets, seams are closed as far as some dozens of rounds do. Texels there belong under the fold mask.
 class SeamHeights {
   public:
     /// \param tiles  as uvTiles() lists them \param map  the texels of the first of them, gutters included; the maps of
@@ -27,7 +27,7 @@ class SeamHeights {
                 const std::vector<Imath::V2i>& tiles, const TexelMap& map, int gutterTexels);
 
     /// Calls use(x, height, open) for the texels of a row that seams ask, by x; heights in scene units of the volume,
-    /// as drawn; open: the seam jumps there, or did before the heights of a wall were moved.
+    /// as drawn; open: the seam is not closed there, or a wall is.
     template <typename Use>
     void eachOfRow(std::size_t tile, int y, const Use& use) const {
         const std::uint64_t start = std::uint64_t(tile) << 32 | static_cast<std::uint64_t>(y) * size_;

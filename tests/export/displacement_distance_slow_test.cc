@@ -55,11 +55,10 @@ TEST(DisplacementDistance, TheDisplacedCageOfSpotWithItsOwnUvsIsTheVoxelSurface)
     const test::Measured measured =
         test::measure(readMesh(PATINA_SOURCE_DIR "/data/meshes/spot_control_mesh.obj"), 512, 4096, 2, false);
     test::expectControl(measured);
-    // Spot's UVs are stretched in places: 2 % of its points lie on texels wider than a voxel, which cannot hold what lies
-    // between their middles (0.68 at single points). On the others 0.52; 0.5 is asked.
-    test::expectTheVoxelSurface(measured, 500000, 0.75);
+    // Spot's UVs are stretched in places: 2 % of its points lie on texels wider than a voxel.
+    test::expectTheVoxelSurface(measured, 500000);
     EXPECT_GT(measured.displaced.fineTexels.points, measured.displaced.meshToVolume.points * 95 / 100);
-    EXPECT_LT(measured.displaced.fineTexels.max, 0.55);
+    EXPECT_LT(measured.displaced.fineTexels.max, 0.5);
     ASSERT_GT(measured.seams.size(), 10000u);
     EXPECT_LT(measured.seams.back(), 0.02);
     EXPECT_LT(measured.foldFraction, 0.03);
