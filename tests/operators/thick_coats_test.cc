@@ -58,7 +58,7 @@ TEST(ThickCoat, OfABoxHasSteinersVolume) {
         coat(filmedWork, "film", 0.01, nullptr, filmed->progress);
         coat(filmedWork, "soot", t - 0.01, nullptr, filmed->progress);
         const double second = test::volumeWithin(filmed->volume->grids().surface()) / steiner(t) - 1.0;
-        EXPECT_NEAR(second, 0.0, 2.5e-3) << t;
+        EXPECT_NEAR(second, 0.0, 1e-3) << t;
         EXPECT_LT(std::abs(second), std::abs(library)) << t;
     }
 }
