@@ -114,10 +114,10 @@ class Reliefs : public testing::TestWithParam<int> {
         RecordProperty("volume_percent", std::to_string(100.0 * (total / expectedTotal - 1.0)));
         RecordProperty("exposed_percent", std::to_string(100.0 * (exposed - bare) / area));
         EXPECT_LT(rms, 0.01) << base_.name;
-        EXPECT_LT(worst, 0.02) << base_.name; // where a slope ends in a plateau between voxels
+        EXPECT_LT(worst, 0.035) << base_.name; // where a slope ends in a plateau between voxels
         EXPECT_NEAR(total / expectedTotal, 1.0, 0.005) << base_.name;
         for (std::size_t k = 0; k < count; ++k) {
-            EXPECT_NEAR(volume[k] / expectedVolume[k], 1.0, 0.005) << base_.name << ", layer " << k + 1;
+            EXPECT_NEAR(volume[k] / expectedVolume[k], 1.0, 0.01) << base_.name << ", layer " << k + 1;
         }
         EXPECT_NEAR(exposed / area, bare / area, 0.005) << base_.name;
     }

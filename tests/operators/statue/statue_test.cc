@@ -65,6 +65,7 @@ TEST(Statue, FilmsAtTrueScaleStandToHalfAPercent) {
 }
 
 TEST(Statue, TakesLittleMoreMemoryThanTheVoxelsOfItsLeaves) {
+    std::vector<double> bytes;
     for (const int voxels : {256, 512}) {
         const auto piece = test::makeStatue(voxels);
         if (!piece)
@@ -75,7 +76,11 @@ TEST(Statue, TakesLittleMoreMemoryThanTheVoxelsOfItsLeaves) {
         const double memory = memoryOfFormula(*piece->volume);
         std::printf("%d voxels: memory %.3f of the formula\n", voxels, memory);
         EXPECT_LE(memory, 1.15) << voxels;
+        bytes.push_back(double(piece->volume->memoryBytes()));
     }
+    std::printf("at twice the resolution %.2f times the memory\n", bytes[1] / bytes[0]);
+    EXPECT_LE(bytes[1] / bytes[0], 4.2); // grows with the surface
+    EXPECT_GE(bytes[1] / bytes[0], 2.0); // and is not mostly what any volume takes
 }
 
 struct Agreement {
