@@ -40,7 +40,8 @@ void expectWholeFiles(const fs::path& folder, const std::map<std::string, std::u
 
 class RunFailures : public testing::Test {
   protected:
-    RunFailures() { folder.file("a.patina", "new copper\ncoat tarnish_1 0.35\n"); }
+    // A pattern, so that maps are larger files than the texts beside them.
+    RunFailures() { folder.file("a.patina", "new copper\ncoat tarnish_1 0.35 texture(BD.linear_1.20)\n"); }
 
     Outcome run(const std::string& output, Arguments more = {}) const {
         Arguments words{"run", "a.patina", "strip", "-o", output};
@@ -148,7 +149,7 @@ TEST_F(RunFailures, ABakeThatFailsLeavesNoMap) {
         EXPECT_EQ(outcome.exitCode, 1) << outcome.err;
         EXPECT_EQ(outcome.out, "");
         EXPECT_THAT(outcome.err, HasSubstr("error: baked/"));
-        EXPECT_TRUE(filesIn(folder.path() / "baked").empty());
+        EXPECT_THAT(filesIn(folder.path() / "baked"), testing::IsEmpty()) << limit << outcome.err;
     };
     std::uintmax_t largest = 0;
     for (const auto& [name, size] : whole)
