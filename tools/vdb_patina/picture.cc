@@ -11,10 +11,11 @@
 #include "render/film.h"
 #include "render/path_tracer.h"
 #include "render/stack_shader.h"
-#include "render/voxel_surface.h"
+#include "surface/ray_scene.h"
 #include "volume/interface_mesh.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <chrono>
@@ -68,22 +69,36 @@ struct ShownSurface {
         diced->displacer = std::make_unique<const Displacer>(diced->surface);
     }
 
-    // The voxels' own surface, cut into triangles of about a pixel as the mesh is.
+    // The voxels' own surface. Its normals are the model's, tilted as the interface is against the base: facets and
+    // voxels are no more seen than in the mesh.
+    // As the mesh is, it is cut into triangles of about a pixel: shading follows the field between the voxels.
     void takeVolume(const LayerVolume& volume, const Model& model, const View& view, const Turn& turn,
                     const Options& options) {
         reading = StackReading::vertices;
-        DiceOptions dice;
-        dice.pictureHeight = view.height;
-        dice.pixelsPerEdge = float(options.dice);
-        dice.toPicture = turn;
-        dice.margin = float(volume.scale().voxelSize);
-        VoxelSurface voxels =
-            options.dice > 0.0
-                ? voxelSurface(volume, model.surface,
-                               [&](const SurfaceMesh& coarse) { return patina::diced(coarse, view.camera, dice); })
-                : voxelSurface(volume, model.surface);
-        shown = std::move(voxels.shown);
-        underVoxels = std::move(voxels.under);
+        shown = interfaceMesh(volume, volume.layerCount());
+        if (options.dice > 0.0) {
+            DiceOptions dice;
+            dice.pictureHeight = view.height;
+            dice.pixelsPerEdge = float(options.dice);
+            dice.toPicture = turn;
+            dice.margin = float(volume.scale().voxelSize);
+            shown = patina::diced(shown, view.camera, dice);
+            settleOnInterface(volume, volume.layerCount(), shown);
+        }
+        underVoxels.positions.resize(shown.positions.size());
+        underVoxels.normals.resize(shown.positions.size());
+        underVoxels.triangles = shown.triangles;
+        const std::vector<Imath::V3f> under = baseNormals(volume, shown.positions);
+        const RayScene rays(model.surface.positions, model.surface.triangles);
+        tbb::parallel_for(std::size_t(0), shown.positions.size(), [&](std::size_t v) {
+            const auto nearest = rays.closest(shown.positions[v]);
+            underVoxels.positions[v] = Imath::V3f(positionAt(model.surface, nearest->point));
+            underVoxels.normals[v] = Imath::V3f(normalAt(model.surface, nearest->point));
+            const Imath::V3f tilted = underVoxels.normals[v] + shown.normals[v] - under[v];
+            // Over a thin edge the model's normal may look the other way: the interface's own is right there.
+            if (under[v].length2() > 0.f && (underVoxels.normals[v] ^ under[v]) > 0.5f && tilted.length2() > 0.04f)
+                shown.normals[v] = tilted.normalized();
+        });
     }
 
     const SurfaceMesh& base() const { return diced ? diced->surface : underVoxels; }
@@ -136,7 +151,8 @@ void exposePicture(const RenderScene& scene, const View& view, const FeaturesAt&
         lightsOf(options, view.from.azimuthDegrees, scene.setting ? *scene.setting : scene.surface->bounds());
     const Rendering rendering = render(scene, view.camera, lights, settings, console);
     console.info(fmt::format("{} rays traced in {:.2f} s ({:.2f} s of the processors), {:.3g} samples per pixel",
-                             rendering.rays, rendering.seconds, rendering.processorSeconds, rendering.samplesPerPixel));
+                             rendering.rays, rendering.seconds, rendering.processorSeconds,
+                             rendering.samplesPerPixel));
 
     const ImageMetadata metadata{{"Software", "vdb-patina " PATINA_VERSION}, {"Description", description}};
     if (options.exr) {
