@@ -17,6 +17,12 @@ namespace {
 // Triangles with longer edges are asked piece by piece.
 constexpr double largeVoxels = 8.0, pieceVoxels = 4.0;
 
+// How far to look for a voxel's closest point: phi_0 is the distance to the model, or to a hidden face, or some thousandths
+// too much.
+float nearestWithin(float phi, double voxelSize) {
+    return static_cast<float>(1.0005 * std::abs(phi) + 0.02 * voxelSize);
+}
+
 // A film on a sheet reaches as far down the rim: a voxel would do for the cells that the edge itself runs through.
 constexpr double rimVoxels = 2.0;
 
@@ -194,8 +200,7 @@ void SurfaceBinding::rebind(const LayerVolume& volume) {
                 }
             }
             const openvdb::Coord c = voxel.getCoord();
-            // phi_0 is the distance to the model, or to a hidden face, or some thousandths too much.
-            const auto radius = static_cast<float>(1.0005 * std::abs(*voxel) + 0.02 * voxelSize);
+            const float radius = nearestWithin(*voxel, voxelSize);
             const Imath::V3d x = space.position(c) * voxelSize;
             points_[at] = closest(x, radius, *voxel < 0.f ? deepest : std::numeric_limits<float>::infinity());
         }
@@ -220,9 +225,8 @@ void SurfaceBinding::refineBase(LayerVolume& volume) {
                 distance = (positionAt(*surface_, points_[at]) - x).length();
             } else {
                 const bool metal = *voxel < 0.f;
-                const auto guess = static_cast<float>(1.0005 * std::abs(*voxel) + 0.02 * voxelSize);
-                auto nearest =
-                    scene_->closest(Imath::V3f(x), metal ? float(deepest) + 0.1f * float(voxelSize) : guess);
+                auto nearest = scene_->closest(Imath::V3f(x), metal ? float(deepest) + 0.1f * float(voxelSize)
+                                                                    : nearestWithin(*voxel, voxelSize));
                 if (!nearest && !metal)
                     nearest = scene_->closest(Imath::V3f(x));
                 distance = nearest ? nearest->distance : metal ? 2.0 * deepest : std::abs(*voxel);
