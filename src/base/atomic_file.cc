@@ -49,14 +49,35 @@ void AtomicFile::commit() {
         throw RunError(final_.string(), fmt::format("cannot write the file: {}", failure.message()));
 }
 
-void makeWritableFolder(const fs::path& folder) {
+OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
     std::error_code failure;
-    fs::create_directories(folder, failure);
-    if (failure || !fs::is_directory(folder))
-        throw RunError(folder.string(),
-                       fmt::format("cannot make this folder: {}", failure ? failure.message() : "a file is in the way"),
-                       "give a folder that can be written with -o");
-    AtomicFile probe(folder / "probe");
+    for (fs::path part = fs::absolute(folder_).lexically_normal();
+         part != part.root_path() && !fs::exists(part, failure); part = part.parent_path())
+        if (part.has_filename()) // not the empty name after a last slash
+            made_.push_back(part);
+    try {
+        fs::create_directories(folder_, failure);
+        if (failure || !fs::is_directory(folder_))
+            throw RunError(
+                folder_.string(),
+                fmt::format("cannot make this folder: {}", failure ? failure.message() : "a file is in the way"),
+                "give a folder that can be written with -o");
+        AtomicFile probe(folder_ / "probe");
+    } catch (...) {
+        removeEmpty();
+        throw;
+    }
+}
+
+OutputFolder::~OutputFolder() {
+    removeEmpty();
+}
+
+void OutputFolder::removeEmpty() {
+    std::error_code ignored;
+    for (const fs::path& part : made_)
+        if (fs::is_directory(part, ignored) && !fs::remove(part, ignored))
+            break; // something is in it
 }
 
 void writeTextFile(const fs::path& path, const std::string& text) {

@@ -2,6 +2,7 @@
 // Outputs are written under a temporary name in the same folder and renamed when they are whole.
 
 #include <filesystem>
+#include <vector>
 
 namespace patina {
 
@@ -25,9 +26,24 @@ class AtomicFile {
     std::filesystem::path temporary_;
 };
 
-/// Makes a folder (and its parents) and checks that files can be written in it.
-/// \throws RunError when not.
-void makeWritableFolder(const std::filesystem::path& folder);
+/// A folder for outputs. What fails before anything is written in it leaves no trace: of the folders made here those
+/// that are still empty at the end are removed.
+class OutputFolder {
+  public:
+    /// Makes the folder (and its parents) where it does not exist, and checks that files can be written in it.
+    /// \throws RunError when not.
+    explicit OutputFolder(std::filesystem::path folder);
+    ~OutputFolder();
+    OutputFolder(OutputFolder&&) = default;
+
+    const std::filesystem::path& path() const { return folder_; }
+
+  private:
+    void removeEmpty();
+
+    std::filesystem::path folder_;
+    std::vector<std::filesystem::path> made_; ///< the deepest first
+};
 
 /// Writes a whole text file, atomically.
 void writeTextFile(const std::filesystem::path& path, const std::string& text);

@@ -55,9 +55,27 @@ TEST_F(AtomicFileTest, AMissingFolderIsNamed) {
 
 TEST_F(AtomicFileTest, AFileInTheWayOfAFolderIsAnError) {
     writeTextFile(folder_ / "file", "x");
-    EXPECT_THROW(makeWritableFolder(folder_ / "file"), RunError);
-    EXPECT_THROW(makeWritableFolder(folder_ / "file" / "below"), RunError);
-    EXPECT_NO_THROW(makeWritableFolder(folder_ / "new" / "deep"));
+    EXPECT_THROW(OutputFolder(folder_ / "file"), RunError);
+    EXPECT_THROW(OutputFolder(folder_ / "file" / "below"), RunError);
+    EXPECT_EQ(readTextFile(folder_ / "file"), "x");
+}
+
+TEST_F(AtomicFileTest, AnOutputFolderInWhichNothingIsWrittenIsGoneAgain) {
+    {
+        const OutputFolder output(folder_ / "new" / "deep" / "");
+        EXPECT_TRUE(fs::is_directory(folder_ / "new" / "deep"));
+    }
+    EXPECT_FALSE(fs::exists(folder_ / "new"));
+    {
+        const OutputFolder output(folder_ / "new" / "deep");
+        writeTextFile(folder_ / "new" / "a.txt", "x");
+    }
+    EXPECT_FALSE(fs::exists(folder_ / "new" / "deep"));
+    EXPECT_EQ(readTextFile(folder_ / "new" / "a.txt"), "x");
+    { const OutputFolder existing(folder_ / "new"); }
+    fs::remove(folder_ / "new" / "a.txt");
+    { const OutputFolder existing(folder_ / "new"); }
+    EXPECT_TRUE(fs::is_directory(folder_ / "new")) << "it was there before";
 }
 
 TEST_F(AtomicFileTest, ReadingAFolderOrNothingIsAnError) {

@@ -22,7 +22,8 @@ void bakeVolume(const Arguments& arguments, const Options& given, Console& conso
     const ExistingVolume input = loadExisting(arguments.volume, arguments.model, given, console);
     const Options options = withUpOf(arguments.volume, given);
     const std::string name = std::filesystem::path(arguments.volume).stem().string();
-    const auto folder = outputFolder(options, name);
+    const OutputFolder output = outputFolder(options, name);
+    const auto& folder = output.path();
     // The report of the run stays beside its volume.
     std::error_code ignored;
     const bool besideVolume =

@@ -40,7 +40,8 @@ std::vector<PlacedImage> placed(const FigurePlan& plan, const std::vector<Labell
 void figure(const Arguments& arguments, const Options& options, Console& console) {
     const FigurePlan plan = readFigurePlan(findDataFolder(), arguments.number);
     const std::string name = fmt::format("figure_{:02}", arguments.number);
-    const fs::path folder = outputFolder(options, name);
+    const OutputFolder output = outputFolder(options, name);
+    const fs::path& folder = output.path();
     FigureMaker maker(options, arguments.scale, folder, console);
     std::vector<LabelledImage> images;
     for (const FigureSeries& series : plan.series)

@@ -21,7 +21,8 @@ void addMakeCommand(CLI::App& app, Options& options, Action& action) {
     command->callback([&options, &action, shape] {
         action = [&options, shape](Console& console) {
             const Mesh mesh = makeUprightShape(*shape);
-            const auto file = outputFolder(options, ".") / (*shape + ".obj");
+            const OutputFolder folder = outputFolder(options, ".");
+            const auto file = folder.path() / (*shape + ".obj");
             writeObj(mesh, file);
             console.result(fmt::format("{}: {} faces", file.string(), mesh.faceCount()));
         };

@@ -74,7 +74,8 @@ void drawSwatch(const MaterialLibrary& library, const std::string& name, std::st
     const Swatch swatch = makeSwatch(library, name, over);
     if (!swatch.hasText)
         console.warning("no font was found on this machine: the picture has no labels");
-    const auto file = outputFolder(options, name) / (name + "_swatch.png");
+    const OutputFolder folder = outputFolder(options, name);
+    const auto file = folder.path() / (name + "_swatch.png");
     writePng(swatch.image, file, {{"Software", "vdb-patina " PATINA_VERSION}});
     if (!material->isMetal)
         console.info(fmt::format("over copper it is opaque from {:.3g} µm on (CIEDE2000 below 1)", swatch.opaqueUm));
@@ -139,7 +140,8 @@ void fit(const FitArguments& arguments, const Options& options, Console& console
     }
     source += arguments.body ? std::string("; reflectances of the body")
                              : fmt::format("; measured in air, interface of index {:g} removed", arguments.index);
-    const auto file = outputFolder(options, arguments.name) / (arguments.name + ".toml");
+    const OutputFolder folder = outputFolder(options, arguments.name);
+    const auto file = folder.path() / (arguments.name + ".toml");
     writeTextFile(file, materialFileOf(arguments.name, fitted, arguments.index, source + "."));
     std::string text = "  wavelength/nm   K/(1/µm)   S/(1/µm)\n";
     for (std::size_t i = 0; i < fitted.absorption.values.size(); ++i)

@@ -24,9 +24,9 @@ void renderVolume(const Arguments& arguments, const Options& given, Console& con
     const ExistingVolume input = loadExisting(arguments.volume, arguments.model, given, console);
     const Options options = withUpOf(arguments.volume, given);
     const std::string name = std::filesystem::path(arguments.volume).stem().string();
-    const auto folder = outputFolder(options, name);
+    const OutputFolder folder = outputFolder(options, name);
     const StackOptics optics = opticsOf(input.volume, input.materials, options);
-    const auto file = folder / (name + ".png");
+    const auto file = folder.path() / (name + ".png");
     writePicture(input.volume, input.model, optics, options, file, console);
     console.result(file.string());
 }

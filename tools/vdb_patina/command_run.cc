@@ -27,7 +27,8 @@ void runScript(const std::string& script, const std::string& modelName, const Op
     checkBudget(task, options, console);
     if (options.dryRun)
         return;
-    const fs::path folder = outputFolder(options, program.name);
+    const OutputFolder output = outputFolder(options, program.name);
+    const fs::path& folder = output.path();
     reportFile(options, folder);
     const InterruptedRun interruption(folder, program.name);
     const std::string inputs = hashOfInputs(program, model, run);

@@ -46,7 +46,8 @@ void slice(const Arguments& arguments, const Options& options, Console& console)
     if (picture.cutFraction < 0.999)
         console.info(fmt::format("the surface ends within the cut: {:.0f} % of its width is drawn",
                                  100.0 * picture.cutFraction));
-    const auto file = outputFolder(options, name) / (name + "_slice.png");
+    const OutputFolder folder = outputFolder(options, name);
+    const auto file = folder.path() / (name + "_slice.png");
     writePng(picture.image, file, {{"Software", "vdb-patina " PATINA_VERSION}});
     for (std::size_t k = picture.meanThicknessUm.size(); k-- > 0;)
         console.info(fmt::format("{:<24} {}", volume.layers()[k], readableLength(picture.meanThicknessUm[k])));

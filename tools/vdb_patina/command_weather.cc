@@ -137,8 +137,10 @@ void weather(const Arguments& arguments, const Options& options, Console& consol
                     "only a category has a range, and the paper's rate for copper in the city",
                     "give one with --category");
     checkPictures(arguments, options);
-    const fs::path folder =
-        options.dryRun ? fs::path() : outputFolder(options, fs::path(arguments.model).stem().string() + "_weather");
+    std::optional<OutputFolder> output;
+    if (!options.dryRun)
+        output.emplace(outputFolder(options, fs::path(arguments.model).stem().string() + "_weather"));
+    const fs::path folder = output ? output->path() : fs::path();
     if (!arguments.extremes) {
         runHistory(arguments, plan, kinetics, years, options, folder, console);
         return;

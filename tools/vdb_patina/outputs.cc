@@ -30,10 +30,8 @@ VolumeFileOptions volumeFileOptions(const Options& options) {
     return {options.halfFields, options.up == UpAxis::z ? "z" : "y"};
 }
 
-std::filesystem::path outputFolder(const Options& options, const std::string& name) {
-    const std::filesystem::path folder = options.output.empty() ? name : options.output;
-    makeWritableFolder(folder);
-    return folder;
+OutputFolder outputFolder(const Options& options, const std::string& name) {
+    return OutputFolder(options.output.empty() ? name : options.output);
 }
 
 std::filesystem::path reportFile(const Options& options, const std::filesystem::path& folder,

@@ -1,6 +1,7 @@
 #pragma once
 // What several commands make from a volume and its model: maps, meshes.
 
+#include "base/atomic_file.h"
 #include "console.h"
 #include "export/bake.h"
 #include "model_input.h"
@@ -22,8 +23,9 @@ StackOptics opticsOf(const LayerVolume& volume, const MaterialLibrary& materials
 /// What the options say of a .vdb.
 VolumeFileOptions volumeFileOptions(const Options& options);
 
-/// The folder for results: -o, or one named after the result. Made, and checked for being writable.
-std::filesystem::path outputFolder(const Options& options, const std::string& name);
+/// The folder for results: -o, or one named after the result. Made, and checked for being writable; gone again where
+/// nothing is written in it.
+OutputFolder outputFolder(const Options& options, const std::string& name);
 
 /// Where the report goes: --report, or NAME in the folder; found out before the work is done that it can be written.
 /// \throws RunError where it cannot
