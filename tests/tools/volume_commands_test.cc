@@ -152,6 +152,15 @@ std::string twoQuads(const std::string& firstU, const std::string& lastU) {
            "f 1/1 2/2 5/3 4/4\nf 2/5 3/6 6/7 5/8\n";
 }
 
+TEST_F(VolumeCommands, ChartsOnEachOtherAreNamedAndNoFolderIsLeft) {
+    folder.file("quads.obj", twoQuads("0", "1"));
+    const Outcome outcome = run({"run", "ball.patina", "quads.obj", "-o", "new/charts", "--scheme", "none", "--voxels",
+                                 "32", "--resolution", "64", "--picture", "0"});
+    EXPECT_EQ(outcome.exitCode, 4) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("faces 1 and 2: lie on each other in the UVs"));
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "new"));
+}
+
 TEST_F(VolumeCommands, SeveralUvTilesGiveSeveralFiles) {
     folder.file("quads.obj", twoQuads("1", "2"));
     const Arguments words =
