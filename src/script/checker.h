@@ -31,7 +31,7 @@ struct CheckContext {
     /// Values of `--set NAME=VALUE`, VALUE as typed ("0.3", "2mm").
     std::map<std::string, std::string> settings;
     Kinetics kinetics;      ///< for iso9224() and expansion()
-    bool checkFiles = true; ///< that textures and volumes exist
+    bool checkFiles = true; ///< that textures and volumes exist, and textures are images that have the channel
 
     // What this build implements. A word of the language that is missing here is an error of the script.
     std::set<std::string> operators = allOperators(); ///< "new", "open", "coat", …

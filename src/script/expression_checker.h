@@ -1,12 +1,14 @@
 #pragma once
 // Expressions: names looked up, arguments and kinds of quantity checked, constants folded.
 
+#include "operators/maps/image_channels.h"
 #include "script/checker.h"
 #include "script/findings.h"
 #include "script/program.h"
 #include "script/scope.h"
 #include "script/syntax.h"
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -68,6 +70,7 @@ class ExpressionChecker {
     Scope& scope_;
     int nodes_ = 0; ///< of the whole expression that is being resolved, `let`s put in
     int depth_ = 0; ///< of resolveNode's recursion
+    std::map<std::string, ImageChannels> images_; ///< by path: a `repeat` asks for the same one at every step
 };
 
 /// The fields that take arguments.

@@ -149,7 +149,12 @@ ThicknessMapPtr MapBuilder::buildCall(const Expression& e, Progress& progress) {
         const std::string channel = e.children.size() < 2                            ? ""
                                     : e.children[1].kind == Expression::Kind::number ? fmt::format("{}", int(number(1)))
                                                                                      : e.children[1].text;
-        return makeTextureMap(mapSurface(), e.children[0].text, channel);
+        try {
+            return makeTextureMap(mapSurface(), e.children[0].text, channel);
+        } catch (const RunError& failure) { // such as a file that ends too soon
+            throw RunError(e.children[0].place.text(),
+                           fmt::format("the texture {}: {}", failure.place(), failure.message()), failure.remedy());
+        }
     }
     if (e.text == "vertices")
         return makeVertexMap(mapSurface(), e.children[0].text);

@@ -191,22 +191,23 @@ TEST(Checker, knowsWhichClausesBelongTogether) {
 TEST(Checker, findsTexturesNextToTheScriptAndMissesThoseThatAreNotThere) {
     const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "patina_script_textures";
     std::filesystem::create_directories(folder / "maps");
-    std::ofstream(folder / "maps" / "a.png") << "any bytes: only the name is checked here";
+    std::ofstream(folder / "maps" / "a.ppm") << "P3 2 1 255 0 10 20 30 40 50";
+    std::ofstream(folder / "maps" / "text.png") << "no image";
     const std::string script = (folder / "test.patina").string();
-    const std::string text = "new copper\ncoat soot 1 texture(\"maps/a.png\", G)";
+    const std::string text = "new copper\ncoat soot 1 texture(\"maps/a.ppm\", G)";
     const Program program = readProgram(text, script, testContext());
     const Expression& map = *coatAt(program, 1).map;
-    EXPECT_EQ(map.children.at(0).text, (folder / "maps/a.png").string());
+    EXPECT_EQ(map.children.at(0).text, (folder / "maps/a.ppm").string());
     EXPECT_EQ(map.children.at(1).text, "G");
 
-    const Program numbered = readProgram("new copper\ncoat soot 1 texture(\"maps/a.png\", 2)", script, testContext());
+    const Program numbered = readProgram("new copper\ncoat soot 1 texture(\"maps/a.ppm\", 2)", script, testContext());
     EXPECT_DOUBLE_EQ(coatAt(numbered, 1).map->children.at(1).number, 2.0);
 
     CheckContext elsewhere = testContext();
     elsewhere.baseFolder = folder / "maps";
-    EXPECT_NO_THROW(readScript("new copper\ncoat soot 1 texture(\"a.png\")", elsewhere));
-    EXPECT_THAT(firstError("coat soot 1 texture(\"maps/a.png\")", elsewhere),
-                HasSubstr("2:21: the texture 'maps/a.png' does not exist"));
+    EXPECT_NO_THROW(readScript("new copper\ncoat soot 1 texture(\"a.ppm\")", elsewhere));
+    EXPECT_THAT(firstError("coat soot 1 texture(\"maps/a.ppm\")", elsewhere),
+                HasSubstr("2:21: the texture 'maps/a.ppm' does not exist"));
     EXPECT_THAT(firstError("coat soot 1 texture(\"\")"), HasSubstr("2:21: the name of the texture is empty"));
     // A folder is no texture.
     elsewhere.baseFolder = folder;
@@ -214,8 +215,19 @@ TEST(Checker, findsTexturesNextToTheScriptAndMissesThoseThatAreNotThere) {
     EXPECT_THAT(briefly(findingsOf("open \"nothing.vdb\"\ncoat soot 1")),
                 ElementsAre("1:6: the volume 'nothing.vdb' does not exist"));
 
+    // An image that is none, and channels that it has not.
+    elsewhere.baseFolder = folder / "maps";
+    EXPECT_THAT(firstError("coat soot 1 texture(\"text.png\")", elsewhere),
+                HasSubstr("2:21: the texture 'text.png' cannot be read as an image"));
+    EXPECT_EQ(firstError("coat soot 1 texture(\"a.ppm\", height)", elsewhere),
+              "2:30: the texture 'a.ppm' has no channel 'height' (it has R, G and B)");
+    EXPECT_EQ(firstError("coat soot 1 texture(\"a.ppm\", 3)", elsewhere),
+              "2:30: the texture 'a.ppm' has no channel '3' (it has R, G and B)");
+    EXPECT_THAT(briefly(findingsOf("new copper\nrepeat 3 { coat soot 1 texture(\"a.ppm\", A) }", elsewhere)),
+                ElementsAre("2:41: the texture 'a.ppm' has no channel 'A'"));
+
     elsewhere.checkFiles = false;
-    EXPECT_NO_THROW(readScript("open \"nothing.vdb\"\ngrow soot 1 texture(\"b.png\")", elsewhere));
+    EXPECT_NO_THROW(readScript("open \"nothing.vdb\"\ngrow soot 1 texture(\"b.png\", height)", elsewhere));
     std::filesystem::remove_all(folder);
 }
 

@@ -32,6 +32,40 @@ TEST(ScriptErrors, AllThreeAreToldAtOnceWithLineAndCaret) {
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
 }
 
+TEST(ScriptErrors, AnImageThatIsNoneOrLacksTheChannelIsOne) {
+    const TemporaryFolder folder;
+    folder.file("text.png", "no image");
+    folder.file("colours.ppm", "P3 2 1 255 0 10 20 30 40 50");
+    folder.file("wrong.patina", "new copper\n"
+                                "coat soot 1 texture(\"text.png\")\n"
+                                "let wear = 1 - texture(\"colours.ppm\", height)\n"
+                                "coat soot 1 wear\n");
+    for (const Arguments& line : {Arguments{"check", "wrong.patina"},
+                                  small({"run", "wrong.patina", "strip", "-o", "out"})}) {
+        const Outcome outcome = vdbPatina(line, folder.path());
+        EXPECT_EQ(outcome.exitCode, 3);
+        EXPECT_EQ(outcome.out, "");
+        EXPECT_THAT(outcome.err, HasSubstr("wrong.patina:2:21: error: the texture 'text.png' cannot be read as an image\n"
+                                           "    coat soot 1 texture(\"text.png\")\n"
+                                           "                        ^\n"));
+        EXPECT_THAT(outcome.err, HasSubstr("wrong.patina:3:39: error: the texture 'colours.ppm' has no channel 'height'\n"
+                                           "    let wear = 1 - texture(\"colours.ppm\", height)\n"
+                                           "                                          ^\n"
+                                           "    it has R, G and B"));
+        EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+    }
+}
+
+TEST(ScriptErrors, AnImageThatEndsTooSoonEndsTheRunWith1AndItsPlace) {
+    const TemporaryFolder folder;
+    folder.file("short.ppm", "P6 64 64 255\nabc");
+    folder.file("a.patina", "new copper\ncoat soot 1 texture(\"short.ppm\", R)\n");
+    const Outcome outcome = vdbPatina(small({"run", "a.patina", "strip", "-o", "out"}), folder.path());
+    EXPECT_EQ(outcome.exitCode, 1);
+    EXPECT_THAT(outcome.err, HasSubstr("a.patina:2:21: the texture "));
+    EXPECT_THAT(outcome.err, HasSubstr("short.ppm: cannot be read"));
+}
+
 struct WrongScript {
     const char* text;
     std::vector<const char*> says;

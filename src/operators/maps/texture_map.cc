@@ -1,9 +1,11 @@
 #include "operators/maps/texture_map.h"
 
 #include "base/errors.h"
+#include "operators/maps/image_channels.h"
 
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -48,13 +50,10 @@ std::vector<std::pair<int, float>> channelWeights(const OIIO::ImageSpec& spec, c
             return {{0, 0.2126f}, {1, 0.7152f}, {2, 0.0722f}};
         return {{0, 1.f}};
     }
-    for (int c = 0; c < spec.nchannels; ++c)
-        if (spec.channelnames[c] == channel || std::to_string(c) == channel)
-            return {{c, 1.f}};
-    std::string names;
-    for (const std::string& name : spec.channelnames)
-        names += (names.empty() ? "" : ", ") + name;
-    throw RunError(file, fmt::format("the image has no channel '{}'", channel), fmt::format("it has {}", names));
+    if (const auto found = ImageChannels(spec.channelnames).find(channel))
+        return {{*found, 1.f}};
+    throw RunError(file, fmt::format("the image has no channel '{}'", channel),
+                   fmt::format("it has {}", fmt::join(spec.channelnames, ", ")));
 }
 
 } // namespace
