@@ -74,5 +74,13 @@ TEST_F(Budget, OfAPicturesPeakIsWithin15Percent) {
     expectPeakWithin15Percent("statuette", "96", "64", {}, "640");
 }
 
+// Dicing ends at a pixel, whatever the voxels and the part of the picture that a close-up fills.
+TEST_F(Budget, OfACloseUpsPictureIsWithin15PercentAtEverySize) {
+    for (const char* picture : {"256", "512", "800"})
+        expectPeakWithin15Percent("statuette", "96", "64", "0,0,0,0.03", picture);
+    expectPeakWithin15Percent("sphere", "96", "64", "0,0,0,0.02", "512");
+    expectPeakWithin15Percent("plate", "96", "64", "0,0,0,0.02", "640");
+}
+
 } // namespace
 } // namespace patina::test

@@ -1,6 +1,7 @@
 #include "picture.h"
 
 #include "picture_budget.h"
+#include "picture_dice.h"
 #include "table_pose.h"
 #include "view_input.h"
 
@@ -19,6 +20,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 
 namespace patina::tool {
 
@@ -42,18 +44,14 @@ struct ShownSurface {
     // picture's are taken where they would be the same.
     void takeMesh(const Model& model, const View& view, const Turn& turn, float highest, const LayerVolume& volume,
                   const Options& options) {
-        const auto voxel = float(volume.scale().voxelSize);
-        DiceOptions dice;
-        dice.pictureHeight = view.height;
-        dice.pixelsPerEdge = float(options.dice);
+        DiceOptions dice = dicingOf(view, options, volume.scale().voxelSize);
         dice.toPicture = turn;
         // In steps, so that a patina that grows a little changes nothing.
-        dice.margin = voxel;
         while (dice.margin < highest)
             dice.margin *= 2.f;
         const bool dices = options.dice > 0.0 && volume.layerCount() > 0;
-        if (dices)
-            dice.longestEdge = 1.5f * voxel; // what the shader reads at vertices alone
+        if (!dices)
+            dice.longestEdge = std::numeric_limits<float>::infinity();
         const std::shared_ptr<DicedModel> kept = view.diced;
         if (kept && kept->model == &model.surface && kept->margin == dice.margin &&
             kept->longestEdge == dice.longestEdge) {
@@ -77,11 +75,9 @@ struct ShownSurface {
         reading = StackReading::vertices;
         shown = interfaceMesh(volume, volume.layerCount());
         if (options.dice > 0.0) {
-            DiceOptions dice;
-            dice.pictureHeight = view.height;
-            dice.pixelsPerEdge = float(options.dice);
+            DiceOptions dice = dicingOf(view, options, volume.scale().voxelSize);
+            dice.longestEdge = std::numeric_limits<float>::infinity(); // the interface's own are a voxel long
             dice.toPicture = turn;
-            dice.margin = float(volume.scale().voxelSize);
             shown = patina::diced(shown, view.camera, dice);
             settleOnInterface(volume, volume.layerCount(), shown);
         }
@@ -105,7 +101,7 @@ struct ShownSurface {
 };
 
 void checkSize(int width, int height, const Options& options) {
-    const double need = bytesPerPixel * width * height / (1024.0 * 1024.0 * 1024.0);
+    const double need = bytesPerPixel(options.exr) * width * height / (1024.0 * 1024.0 * 1024.0);
     const double allowed = options.budgetGiB > 0.0 ? options.budgetGiB : 4.0;
     if (need > allowed)
         throw Error(ExitCode::budget, "--picture",

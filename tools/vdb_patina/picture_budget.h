@@ -6,13 +6,16 @@
 
 namespace patina::tool {
 
-/// Of a picture itself: light takes 12 bytes a pixel, features 44, their halves as much again.
-inline constexpr double bytesPerPixel = 160.0;
+/// Of a picture itself: its light and that as it is shown take 12 bytes a pixel each, the PNG 3; an EXR's features 44,
+/// and as much again with the light while they are written.
+constexpr double bytesPerPixel(bool exr) {
+    return exr ? 160.0 : 27.0;
+}
 
-/// Memory of the picture that `options` ask for of a model under layers: the surface cut into triangles of a pixel where
-/// the camera sees it, their trees and stacks, and the picture. Counted from what the bare model's triangles that face the
-/// camera cover in it; 0 without a picture.
+/// Memory of the picture that `options` ask for of a model under so many layers: the surface cut into triangles of a pixel
+/// where the camera sees it (dicedTriangles(), of the bare model), their trees and stacks, and the picture; 0 without a
+/// picture.
 /// \throws Error (command line) where --camera or --closeup cannot be read
-double pictureBytes(const Options& options, const Model& model);
+double pictureBytes(const Options& options, const Model& model, int layers);
 
 } // namespace patina::tool
