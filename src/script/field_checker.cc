@@ -1,4 +1,4 @@
-// accessibility(3mm, global=yes), exposure and wetness(sky=overcast, latitude=45, months=(4, 9), rays=256, ground=yes).
+// accessibility(6mm, soft=2mm, global=yes), exposure and wetness(sky=overcast, latitude=45, months=(4, 9), rays=256, ground=yes).
 
 #include "base/names.h"
 #include "operators/fields/field_store.h"
@@ -183,12 +183,14 @@ std::optional<Expression> FieldChecker::exposure(const SyntaxExpression& syntax)
 
 std::optional<Expression> FieldChecker::accessibility(const SyntaxExpression& syntax) {
     Findings& findings = expressions_.findings_;
-    const SyntaxExpression* radius = nullptr;
+    const SyntaxExpression *radius = nullptr, *soft = nullptr;
     bool global = false, good = true;
     for (std::size_t i = 0; i < syntax.children.size(); ++i) {
         const SyntaxWord& name = syntax.argumentNames[i];
         if (name.text.empty() && i == 0) {
             radius = &syntax.children[i];
+        } else if (name.text == "soft") {
+            soft = &syntax.children[i];
         } else if (name.text == "global") {
             const auto answer = yesOrNo(syntax.children[i], "global");
             good = answer.has_value() && good;
@@ -197,7 +199,7 @@ std::optional<Expression> FieldChecker::accessibility(const SyntaxExpression& sy
             findings.error(name.text.empty() ? syntax.children[i].offset : name.offset,
                            name.text.empty() ? "'accessibility' has one radius"
                                              : fmt::format("'accessibility' has no argument '{}'", name.text),
-                           "it is written accessibility(radius) or accessibility(radius, global=yes)");
+                           "it is written accessibility(radius), accessibility(radius, soft=LENGTH, global=yes)");
             good = false;
         }
     }
@@ -208,18 +210,25 @@ std::optional<Expression> FieldChecker::accessibility(const SyntaxExpression& sy
     if (!good || !expressions_.implemented("accessibility", syntax.offset))
         return std::nullopt;
     const auto um = expressions_.lengthPositive(*radius, "the radius");
-    if (!um)
+    const auto softUm = soft ? expressions_.lengthPositive(*soft, "how soft it is") : std::optional<double>(0.0);
+    if (!um || !softUm)
         return std::nullopt;
-    Expression out = expressions_.node(Expression::Kind::call, syntax);
-    Expression number = expressions_.node(Expression::Kind::number, *radius);
-    number.number = *um;
-    number.isLength = true;
-    out.children.push_back(std::move(number));
-    if (global) {
-        Expression flag = expressions_.node(Expression::Kind::number, syntax);
-        flag.number = 1.0;
-        out.children.push_back(std::move(flag));
+    if (*softUm > *um) {
+        findings.error(soft->offset, "a hand is no softer than it is wide",
+                       "give `soft` a length up to that of the radius");
+        return std::nullopt;
     }
+    // radius, softness, whether global
+    Expression out = expressions_.node(Expression::Kind::call, syntax);
+    const auto add = [&](const SyntaxExpression& place, double value, bool isLength) {
+        Expression number = expressions_.node(Expression::Kind::number, place);
+        number.number = value;
+        number.isLength = isLength;
+        out.children.push_back(std::move(number));
+    };
+    add(*radius, *um, true);
+    add(soft ? *soft : syntax, *softUm, true);
+    add(syntax, global ? 1.0 : 0.0, false);
     return out;
 }
 

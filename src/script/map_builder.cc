@@ -160,10 +160,13 @@ ThicknessMapPtr MapBuilder::buildCall(const Expression& e, Progress& progress) {
         return makeVertexMap(mapSurface(), e.children[0].text);
     if (e.text == "accessibility") {
         AccessibilityRequest request;
+        const double unitsPerUm =
+            context_.unitsPerRealUm * (context_.region ? context_.region->region().magnification : 1.0);
         request.radiusUm = number(0);
-        request.radius = number(0) * context_.unitsPerRealUm *
-                         (context_.region ? context_.region->region().magnification : 1.0);
-        request.global = e.children.size() > 1;
+        request.radius = number(0) * unitsPerUm;
+        request.softUm = number(1);
+        request.soft = number(1) * unitsPerUm;
+        request.global = number(2) != 0.0;
         return ofField(request.fieldName(),
                        [&](FieldStore& fields) { return fields.accessibility(request, progress); });
     }

@@ -32,16 +32,16 @@ struct Curve {
 };
 
 /// A map over the surface as a tree. What a checked program can hold, by kind:
-///
-/// | kind   | `text`                          | `children`                         |
-/// | ------ | ------------------------------- | ---------------------------------- |
-/// | number |                                 | `number`; µm where `isLength`      |
-/// | string | the file, relative names joined to the script's folder | only as first argument of texture |
-/// | name   | a field (`exposure`, `wetness`, `slope`, `elevation`); as an argument of texture or vertices a channel or
-/// attribute | | | call   | the function: `texture` (of a file), `vertices`, `noise`, `turbulence`, `accessibility`,
-/// `facing`, `min`, `max`, `clamp`, `mix`, `pow`, `smoothstep` | its arguments, their number checked | | unary  | `-`
-/// | one                                | | binary | `+`, `-`, `*` or `/`            | two | | growth | | `growth`:
-/// texture(BD.linear_1.20)  | | curve  | the curve's name                | `curve`, and one child: its argument |
+/// - number: `number`, µm where `isLength`
+/// - string: `text` is a file, relative names joined to the script's folder; only the first argument of `texture`
+/// - name: `text` is a field (`exposure`, `wetness`, `slope`, `elevation`), or an argument of `texture` or `vertices`: a
+///   channel or an attribute
+/// - call: `text` is the function: `texture` (of a file), `vertices`, `noise`, `turbulence`, `facing`, `min`, `max`,
+///   `clamp`, `mix`, `pow`, `smoothstep`, its `children` their arguments, whose number is checked; of `accessibility` they
+///   are always three: radius, softness (0: none), 1 where it is global
+/// - unary: `text` is `-`, one child; binary: `+`, `-`, `*` or `/`, two
+/// - growth: `growth`, of texture(BD.linear_1.20)
+/// - curve: `text` is its name, `curve`, and one child: its argument
 ///
 /// Every constant part has been folded into one number.
 struct Expression {

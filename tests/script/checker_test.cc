@@ -169,6 +169,11 @@ TEST(Checker, knowsFunctionsFieldsAndTheirArguments) {
     EXPECT_EQ(firstError("coat soot 1 min(1)"),
               "2:13: 'min' has 1 argument, which is too few (it is written min(a, b))");
     EXPECT_EQ(firstError("coat soot 1 noise(size=1mm)"), "2:19: 'noise' takes no named arguments");
+    EXPECT_EQ(firstError("coat soot 1 accessibility(2mm, soft=3mm)"),
+              "2:37: a hand is no softer than it is wide (give `soft` a length up to that of the radius)");
+    EXPECT_THAT(firstError("coat soot 1 accessibility(2mm, soft=0)"), HasSubstr("2:37: how soft it is must be"));
+    EXPECT_THAT(firstError("coat soot 1 accessibility(2mm, hard=1mm)"),
+                HasSubstr("2:32: 'accessibility' has no argument 'hard'"));
     EXPECT_THAT(firstError("coat soot 1 slope(2)"), HasSubstr("2:13: 'slope' has no arguments"));
     EXPECT_THAT(firstError("coat soot 1 \"a.png\""), HasSubstr("2:13: a quoted text can only be a texture's file"));
     EXPECT_THAT(firstError("coat soot 1 (1, 2)"), HasSubstr("2:13: a list has no place here"));

@@ -37,8 +37,12 @@ TEST(FieldArguments, AreReadByName) {
     EXPECT_TRUE(requestOf("exposure(sky=uniform, sun=yes)").light.sun);
     EXPECT_EQ(requestOf("exposure(sky=12)").light.sky, clearSky);
     EXPECT_EQ(requestOf("wetness(latitude=60)").fieldName("wetness"), "wetness_latitude60");
-    const Program program = readScript("new copper\ncoat soot 1 1 - accessibility(3mm, global=yes)\n");
-    EXPECT_EQ(coatAt(program, 1).map->children.at(1).children.size(), 2u);
+    const Program program = readScript("new copper\ncoat soot 1 1 - accessibility(3mm, soft=0.5mm, global=yes)\n");
+    const Expression& accessibility = coatAt(program, 1).map->children.at(1);
+    ASSERT_EQ(accessibility.children.size(), 3u);
+    EXPECT_DOUBLE_EQ(accessibility.children[0].number, 3000.0);
+    EXPECT_DOUBLE_EQ(accessibility.children[1].number, 500.0);
+    EXPECT_DOUBLE_EQ(accessibility.children[2].number, 1.0);
 }
 
 TEST(FieldArguments, NorthAlongTheModelsUpAxisIsAMistakeWhereTheAxisIsKnown) {

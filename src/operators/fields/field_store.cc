@@ -5,6 +5,7 @@
 #include "operators/fields/accessibility.h"
 #include "operators/fields/crease_map.h"
 #include "operators/fields/field_grid.h"
+#include "operators/fields/surface_average.h"
 #include "operators/fields/wetness.h"
 #include "volume/band.h"
 #include "volume/interface_mesh.h"
@@ -53,7 +54,8 @@ void requireUp(const V3d& up) {
 } // namespace
 
 std::string AccessibilityRequest::fieldName() const {
-    return "accessibility_" + lengthForName(radiusUm) + (global ? "_global" : "");
+    return "accessibility_" + lengthForName(radiusUm) + (soft > 0.0 ? "_soft" + lengthForName(softUm) : "") +
+           (global ? "_global" : "");
 }
 
 std::string ExposureRequest::fieldName(const std::string& word) const {
@@ -85,7 +87,7 @@ std::string ExposureRequest::fieldName(const std::string& word) const {
 }
 
 std::string AccessibilityRequest::text() const {
-    return fmt::format("{:a} {:a} {}", radius, radiusUm, global);
+    return fmt::format("{:a} {:a} {}", radius, radiusUm, global) + (soft > 0.0 ? fmt::format(" {:a}", soft) : "");
 }
 
 std::string ExposureRequest::text() const {
@@ -153,7 +155,7 @@ std::vector<float> FieldStore::accessibilityValues(const AccessibilityRequest& r
     auto values = accessibleRadii(*scene_.volume, surface_.voxels, surface_.layer, limit, request.global, progress);
     for (float& value : values)
         value = static_cast<float>(std::min(1.0, value / limit));
-    return values;
+    return surfaceAverage(surface_.voxels, values, 0.5 * request.soft / scene_.volume->scale().voxelSize, progress);
 }
 
 std::optional<Obstacles> FieldStore::modelObstacles() const {

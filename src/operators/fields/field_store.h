@@ -14,13 +14,15 @@
 
 namespace patina {
 
-/// `accessibility(3mm)`, `accessibility(3mm, global=yes)`.
+/// `accessibility(3mm)`, `accessibility(3mm, global=yes)`, `accessibility(6mm, soft=2mm)`.
 struct AccessibilityRequest {
     double radius = 0.0;   ///< scene units of the volume, > 0
     double radiusUm = 0.0; ///< the same in real µm, for the name
     bool global = false;
+    double soft = 0.0;   ///< scene units; twice the standard deviation of the mean along the surface, 0: none
+    double softUm = 0.0; ///< the same in real µm
 
-    std::string fieldName() const; ///< "accessibility_3mm", "accessibility_3mm_global"
+    std::string fieldName() const; ///< "accessibility_3mm", "accessibility_6mm_soft2mm_global"
     std::string text() const;      ///< all of it, exactly
 };
 

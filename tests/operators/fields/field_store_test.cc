@@ -181,6 +181,9 @@ TEST(FieldStore, NamesFieldsAfterTheirArguments) {
     EXPECT_EQ(access.fieldName(), "accessibility_3mm");
     access.global = true;
     EXPECT_EQ(access.fieldName(), "accessibility_3mm_global");
+    access.soft = 0.5;
+    access.softUm = 500.0;
+    EXPECT_EQ(access.fieldName(), "accessibility_3mm_soft500um_global");
     ExposureRequest light;
     EXPECT_EQ(light.fieldName(), "exposure");
     light.light.sky = overcastSky;
