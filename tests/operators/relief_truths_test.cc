@@ -6,7 +6,13 @@
 #include "operators/polish.h"
 #include "support/relief_surfaces.h"
 
+#include "volume/leaf_lattice.h"
+#include "volume/nest_grids.h"
+
 #include <gtest/gtest.h>
+
+#include <numeric>
+#include <utility>
 
 namespace patina {
 namespace {
@@ -78,20 +84,49 @@ class Reliefs : public testing::TestWithParam<int> {
     std::unique_ptr<test::Piece> piece_ = test::makePiece(base_.surface(), test::voxelScale(), 6.0);
     test::FunctionMap map_{[this](const MapPoint& point) { return base_.factor(point.position); }};
 
+    // The layers expected, in every voxel: phi_0 less their height at the model's closest point.
+    LayerVolume exactLayers(const std::function<std::vector<double>(double factor)>& layersAt) const {
+        LayerVolume exact = piece_->volume->clone();
+        NestGrids& grids = exact.grids();
+        const SurfaceBinding& binding = *piece_->binding;
+        const auto base = leavesOf(std::as_const(grids.base->tree()));
+        for (std::size_t k = 0; k < grids.interfaces.size(); ++k) {
+            const auto interface = leavesOf(grids.interfaces[k]->tree());
+            for (std::size_t n = 0; n < base.size(); ++n) {
+                std::size_t at = binding.leafStart(n);
+                forActive(*base[n], [&](openvdb::Index pos) {
+                    const SurfacePoint& under = binding.at(at++);
+                    if (under.triangle < 0)
+                        return;
+                    const std::vector<double> um = layersAt(base_.factor(positionAt(binding.surface(), under)));
+                    const double height = std::accumulate(um.begin(), um.begin() + std::ptrdiff_t(k) + 1, 0.0);
+                    interface[n]->buffer().data()[pos] = base[n]->buffer().data()[pos] - float(height);
+                });
+            }
+        }
+        return exact;
+    }
+
     /// Compares the stack with the layers expected at a factor of the map.
+    ///
+    /// Trilinear reading rounds off the edge of a plateau between two voxels, by up to an eighth of the change of slope,
+    /// and what is curved: also of a nest that is exact in every voxel it is up to 0.028 voxel off. So single heights
+    /// are compared with what is read of that nest; means and volumes with the closed form.
     ///
     /// Exposed is where the outermost layer is not. A film that runs out over a slope does so at the next voxel, so the
     /// area is carried on to zero from those where it is thinner than 0.1, 0.2, 0.3 voxel.
     void expectLayers(const std::function<std::vector<double>(double factor)>& layersAt) {
-        const StackProbe probe(*piece_->volume);
+        const LayerVolume exact = exactLayers(layersAt);
+        const StackProbe probe(*piece_->volume), exactProbe(exact);
         const std::size_t count = layersAt(0.5).size();
         ASSERT_EQ(std::size_t(piece_->volume->layerCount()), count);
-        std::vector<double> um(count), volume(count, 0.0), expectedVolume(count, 0.0);
-        double area = 0.0, thinner[3] = {}, bare = 0.0, worst = 0.0, squares = 0.0, total = 0.0, expectedTotal = 0.0;
+        std::vector<double> exactUm(count), um(count), volume(count, 0.0), expectedVolume(count, 0.0);
+        double area = 0.0, thinner[3] = {}, bare = 0.0, worst = 0.0, ofReading = 0.0, ofOperator = 0.0, squares = 0.0, total = 0.0, expectedTotal = 0.0;
         for (const Place& place : base_.places()) {
             const auto reading = probe.read(place.position, place.normal, um.data());
             ASSERT_TRUE(reading.found);
             const std::vector<double> expected = layersAt(place.factor);
+            const auto exactly = exactProbe.read(place.position, place.normal, exactUm.data());
             double height = 0.0;
             for (std::size_t k = 0; k < count; ++k) {
                 volume[k] += um[k] * place.area;
@@ -102,6 +137,8 @@ class Reliefs : public testing::TestWithParam<int> {
             expectedTotal += height * place.area;
             worst = std::max(worst, std::abs(reading.height - height));
             squares += std::pow(reading.height - height, 2) * place.area;
+            ofReading = std::max(ofReading, std::abs(exactly.height - height));
+            ofOperator = std::max(ofOperator, std::abs(reading.height - exactly.height));
             area += place.area;
             for (int i = 0; i < 3; ++i)
                 thinner[i] += um.back() < 0.1 * (i + 1) ? place.area : 0.0;
@@ -111,13 +148,18 @@ class Reliefs : public testing::TestWithParam<int> {
         RecordProperty("base", base_.name);
         RecordProperty("height_rms", std::to_string(rms));
         RecordProperty("height_worst", std::to_string(worst));
+        RecordProperty("height_worst_of_reading", std::to_string(ofReading));
+        RecordProperty("height_worst_of_operator", std::to_string(ofOperator));
         RecordProperty("volume_percent", std::to_string(100.0 * (total / expectedTotal - 1.0)));
         RecordProperty("exposed_percent", std::to_string(100.0 * (exposed - bare) / area));
         EXPECT_LT(rms, 0.01) << base_.name;
-        EXPECT_LT(worst, 0.035) << base_.name; // where a slope ends in a plateau between voxels
+        EXPECT_LT(ofOperator, 0.02) << base_.name;
+        EXPECT_LT(ofReading, 0.03) << base_.name;
+        EXPECT_LT(worst, 0.035) << base_.name;
         EXPECT_NEAR(total / expectedTotal, 1.0, 0.005) << base_.name;
         for (std::size_t k = 0; k < count; ++k) {
-            EXPECT_NEAR(volume[k] / expectedVolume[k], 1.0, 0.01) << base_.name << ", layer " << k + 1;
+            // A second coat on a ball of 30 voxels is 0.3 % thin, and a third of it is left (0.60).
+            EXPECT_NEAR(volume[k] / expectedVolume[k], 1.0, base_.name == "sphere" ? 0.0065 : 0.005) << base_.name << ", layer " << k + 1;
         }
         EXPECT_NEAR(exposed / area, bare / area, 0.005) << base_.name;
     }
