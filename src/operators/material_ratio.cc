@@ -18,7 +18,8 @@ namespace {
 
 constexpr double everywhere = std::numeric_limits<double>::infinity();
 
-// What is read at one point of the surface. Heights in scene units as drawn, above the bare metal.
+// What is read at one point of the surface. Heights in scene units as drawn, above the bare metal: as the cut has them and
+// thicknesses are measured, by phi_0.
 struct Sample {
     Imath::V3f position, normal;
     float factor = 1.f; ///< of the map
@@ -150,11 +151,11 @@ std::vector<Sample> readSamples(const Workpiece& work, const AreaPolish& what, s
             sample.position = Imath::V3f(position);
             sample.normal = Imath::V3f(normal);
             sample.found = reading.found;
-            sample.height = reading.height;
+            sample.height = reading.distance;
             if (what.map)
                 sample.factor = static_cast<float>(clampedFactor(*what.map, surface, points[i], clamped[b]));
             if (!what.ofMaterial.empty())
-                findMaterial(sample, work.volume, what.ofMaterial, reading.metalHeight, thicknessUm.data());
+                findMaterial(sample, work.volume, what.ofMaterial, reading.metalDistance, thicknessUm.data());
         }
     });
     progress.checkpoint();
@@ -303,9 +304,9 @@ std::vector<float> heightsLeft(const Workpiece& work, const ThicknessMap* map, c
             double left = here;
             if (factor < 1.0) {
                 const auto reading = probe.read(position, normal, thicknessUm.data());
-                if (!reading.found || reading.height <= here)
+                if (!reading.found || reading.distance <= here)
                     continue;
-                left = heightAfter(reading.height, factor, here);
+                left = heightAfter(reading.distance, factor, here);
             }
             heights[at] = static_cast<float>(left);
         }

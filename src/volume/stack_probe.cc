@@ -299,10 +299,12 @@ StackProbe::Reading StackProbe::read(const Imath::V3d& point, const Imath::V3d& 
         below = nest.solidLengths(line, below, base + nest.reach, thicknessUm);
         for (int k = 0; k < nest.layers; ++k)
             thicknessUm[k] *= umPerVoxel;
-        reading.height = (below - base) * scale.voxelSize;
+        reading.height = reading.distance = (below - base) * scale.voxelSize;
+        reading.metalDistance = reading.metalHeight;
         return reading;
     }
     double distance = nest.distanceFromBase(line, base, below);
+    reading.metalDistance = distance * scale.voxelSize;
     for (int k = 1; k <= nest.layers; ++k) {
         const double crossing = std::max(below, nest.crossing(k, line, below, base + nest.reach));
         if (crossing > below) {
@@ -313,6 +315,7 @@ StackProbe::Reading StackProbe::read(const Imath::V3d& point, const Imath::V3d& 
         below = crossing;
     }
     reading.height = (below - base) * scale.voxelSize;
+    reading.distance = distance * scale.voxelSize;
     return reading;
 }
 

@@ -28,6 +28,8 @@ class StackProbe {
         double height = 0.0;     ///< surface minus base along the normal, scene units as drawn (exaggerated); below 0
                                  ///< where the metal itself was eroded and not filled again
         double metalHeight = 0.0; ///< what is left of the metal minus base, <= 0
+        /// Both again as thicknesses are measured, by phi_0 near the base: without pores the thicknesses lie between them.
+        double distance = 0.0, metalDistance = 0.0;
     };
 
     /// \param point   on the base surface, scene units; the base must come within 3 voxels of it

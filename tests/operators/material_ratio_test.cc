@@ -179,6 +179,26 @@ TEST(PolishArea, OfAMaterialGoesOnUntilItShowsOnTheFraction) {
     EXPECT_NEAR(stack.layers[1].coverage, 0.7, 0.05); // the edges of the dirt are as sharp as a voxel
 }
 
+TEST(PolishArea, MeasuresHeightsAsThicknessesBesideSharpEdges) {
+    // Even films over roofs of 45 degrees: up from a valley's bottom a line is 1.4 times as long as they are thick. Half
+    // the depth is removed, so the soot shows where the cut lies as far below it as the dirt is thick.
+    const auto roofs = [](double x, double) { return std::abs(std::fmod(x, 10.0) - 5.0); };
+    const auto piece = test::makePiece(test::relief(60.f, 120, roofs), test::voxelScale(), 7.0);
+    auto work = piece->work();
+    coat(work, "soot", 0.4, nullptr, piece->progress);
+    coat(work, "dirt", 0.25, nullptr, piece->progress);
+    const test::FunctionMap half([](const MapPoint&) { return 0.5; });
+    AreaPolish what;
+    what.fraction = 0.95;
+    what.ofMaterial = "soot";
+    what.map = &half;
+    const OperationReport report = polishArea(work, what, piece->progress);
+    EXPECT_NEAR(report.heightUm.value_or(0.0), 0.4 - 0.25, 0.02);
+    EXPECT_GE(report.fraction.value_or(0.0), 0.95);
+    const StackStatistics stack = measureStack(*piece->volume, piece->surface);
+    EXPECT_NEAR(stack.total.meanUm, 0.4, 0.02);
+}
+
 TEST(PolishArea, OfAMaterialThatShowsAlreadyOrNeverWillTakesNothing) {
     const auto piece = coatedWith([&](double x, double) { return 0.4 * std::sin(2.0 * M_PI * x / 30.0); });
     const std::string before = contentHash(*piece->volume);
