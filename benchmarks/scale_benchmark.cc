@@ -1,11 +1,6 @@
 // A statue from 256 to 1024 voxels: time and memory of six layers and what follows them, against the memory formula.
 
-#include "operators/coat.h"
-#include "operators/erode.h"
-#include "operators/fill.h"
-#include "operators/offset.h"
-#include "operators/polish.h"
-
+#include "support/six_layers.h"
 #include "support/statue.h"
 #include "volume/nest_grids.h"
 
@@ -42,21 +37,7 @@ void SixLayersOnAStatue(benchmark::State& state) {
             return;
         }
         const double voxelized = secondsSince(begin);
-        Workpiece work = piece->work();
-        const test::FunctionMap map([&](const MapPoint& point) {
-            return 0.5 + 0.5 * std::sin(point.position.y * 200.0 /
-                                        (piece->volume->scale().voxelSize * double(state.range(0))));
-        });
-        coat(work, "tarnish_1", 0.35, nullptr, piece->progress);
-        coat(work, "cuprite_2", 1.2, &map, piece->progress);
-        coat(work, "marine_patina_3", 3.0, &map, piece->progress);
-        coat(work, "marine_patina_4", 1.8, nullptr, piece->progress);
-        erode(work, 0.5, &map, {}, piece->progress);
-        fill(work, "dirt", 4.0, nullptr, piece->progress);
-        polish(work, 5.8, nullptr, piece->progress);
-        // A ball of the same size in the world: its layer grows with the resolution as all else does.
-        const double radius = 4.0 / 512.0 * double(state.range(0)) * piece->volume->scale().voxelSize;
-        offset(work, "wax", radius, false, piece->progress);
+        test::laySixLayers(*piece, static_cast<int>(state.range(0)));
         state.SetIterationTime(secondsSince(begin));
 
         const NestGrids& grids = piece->volume->grids();

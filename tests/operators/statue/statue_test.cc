@@ -4,14 +4,37 @@
 #include "operators/erode.h"
 #include "operators/fields/accessibility.h"
 #include "support/closed_levels.h"
+#include "support/six_layers.h"
 #include "support/statue.h"
 #include "volume/memory_formula.h"
 #include "volume/stack_probe.h"
 
 #include <gtest/gtest.h>
 
+#include <ctime>
+
 namespace patina {
 namespace {
+
+// Work goes with the surface, four times as much at half the voxel size; the scan's own costs stay what they are. The
+// processors' time, which what else runs on the machine hardly changes.
+TEST(Statue, SixLayersTakeAtMostFourTimesAsLongAtDoubledResolution) {
+    double before = 0.0;
+    for (const int voxels : {128, 256, 512}) {
+        const std::clock_t begin = std::clock();
+        const auto piece = test::makeStatue(voxels);
+        if (!piece)
+            GTEST_SKIP() << "no Happy Buddha beside the project";
+        test::laySixLayers(*piece, voxels);
+        const double seconds = double(std::clock() - begin) / CLOCKS_PER_SEC;
+        std::printf("%d voxels: %.2f s of the processors\n", voxels, seconds);
+        EXPECT_GT(piece->volume->layerCount(), 5);
+        if (before > 0.0) {
+            EXPECT_LE(seconds, 4.4 * before) << voxels;
+        }
+        before = seconds;
+    }
+}
 
 TEST(Statue, FilmsAtTrueScaleStandToHalfAPercent) {
     // 391 µm a voxel: films of 0.0009 … 0.008 voxel, and 0.5 µm of the last taken off again.
