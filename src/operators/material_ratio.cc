@@ -18,8 +18,8 @@ namespace {
 
 constexpr double everywhere = std::numeric_limits<double>::infinity();
 
-// What is read at one point of the surface. Heights in scene units as drawn, above the bare metal: as the cut has them and
-// thicknesses are measured, by phi_0.
+// What is read at one point of the surface. Heights in scene units as drawn, above the bare metal: as the cut has them
+// and thicknesses are measured, by phi_0.
 struct Sample {
     Imath::V3f position, normal;
     float factor = 1.f; ///< of the map
@@ -59,8 +59,7 @@ Solution cutToPlateau(const std::vector<Sample>& samples, std::vector<std::uint3
             // Each place stands for its share of the area: between the middles of two shares the height is linear.
             const double share = here.factor > 0.f ? (wanted - sum) / here.factor : 0.0;
             const std::size_t other = share < 0.5 ? (i > 0 ? i - 1 : i) : std::min(i + 1, chosen.size() - 1);
-            const double cut =
-                here.height + (samples[chosen[other]].height - here.height) * std::abs(share - 0.5);
+            const double cut = here.height + (samples[chosen[other]].height - here.height) * std::abs(share - 0.5);
             return {wanted <= 0.0 ? everywhere : cut, fraction};
         }
         sum = next;
@@ -92,9 +91,8 @@ Solution cutToMaterial(const std::vector<Sample>& samples, const std::vector<std
             events.push_back({begin, 1});
         events.push_back({end, -1});
     }
-    std::sort(events.begin(), events.end(), [](const Event& a, const Event& b) {
-        return a.cut != b.cut ? a.cut > b.cut : a.change > b.change;
-    });
+    std::sort(events.begin(), events.end(),
+              [](const Event& a, const Event& b) { return a.cut != b.cut ? a.cut > b.cut : a.change > b.change; });
     const double count = std::max<double>(1.0, static_cast<double>(chosen.size()));
     Solution best{everywhere, showing / count};
     for (const Event& event : events) {

@@ -1,5 +1,6 @@
 #include "render/dice.h"
 
+#include "render/dice_rule.h"
 #include "surface/weld.h"
 
 #include <tbb/parallel_for.h>
@@ -72,7 +73,7 @@ int numbered(std::size_t count, int start, std::vector<int>& numbers, Chosen&& c
 class Dicer {
   public:
     Dicer(const SurfaceMesh& surface, const Camera& camera, const DiceOptions& options)
-        : camera_(camera), options_(options), list_(surface.triangles, weldedIndices(surface.positions)) {
+        : rule_(camera, options), options_(options), list_(surface.triangles, weldedIndices(surface.positions)) {
         mesh_.positions = surface.positions;
         mesh_.normals = surface.normals;
         mesh_.triangles = surface.triangles;
@@ -86,8 +87,7 @@ class Dicer {
     }
 
     SurfaceMesh run() {
-        // Each round halves edges; 24 halve the largest a float tells from the smallest.
-        for (int round = 0; round < 24 && mesh_.triangles.size() <= options_.mostTriangles; ++round)
+        for (int round = 0; round < mostDiceRounds && mesh_.triangles.size() <= options_.mostTriangles; ++round)
             if (!splitOnce())
                 break;
         return std::move(mesh_);
@@ -100,49 +100,29 @@ class Dicer {
 
     V3f inPicture(const V3f& p) const { return options_.toPicture ? options_.toPicture(p) : p; }
 
-    // No corner's normal comes within 17 degrees of facing the camera; relief on it is as good as never seen.
+    DiceRule::Corners seenCorners(const V3i& t) const {
+        return {seen_[std::size_t(t.x)], seen_[std::size_t(t.y)], seen_[std::size_t(t.z)]};
+    }
+
     bool isTurnedAway(const V3i& t) const {
+        DiceRule::Corners normals;
         for (int i = 0; i < 3; ++i) {
-            const V3f& p = mesh_.positions[std::size_t(t[i])];
-            const V3f& n = mesh_.normals[std::size_t(t[i])];
-            const V3f toCamera = (camera_.position() - seen_[std::size_t(t[i])]).normalized();
-            const V3f normal = options_.toPicture ? (inPicture(p + n) - inPicture(p)) : n;
-            if ((normal ^ toCamera) > -0.3f * normal.length())
-                return false;
+            const V3f &p = mesh_.positions[std::size_t(t[i])], &n = mesh_.normals[std::size_t(t[i])];
+            normals[std::size_t(i)] = options_.toPicture ? inPicture(p + n) - inPicture(p) : n;
         }
-        return true;
-    }
-
-    bool isTooLong(const V3f& a, const V3f& b) const {
-        const float length = (a - b).length();
-        if (length > options_.longestEdge)
-            return true;
-        const V3f middle = 0.5f * (a + b);
-        const float depth = std::max((middle - camera_.position()) ^ camera_.forward(), 0.5f * length);
-        return length > options_.pixelsPerEdge * camera_.pixelAt(depth, options_.pictureHeight);
-    }
-
-    // A triangle lies within its longest edge's length of that edge's middle.
-    bool isInView(const V3f& a, const V3f& b, const V3f& c) const {
-        const std::array<std::pair<V3f, V3f>, 3> edges{{{a, b}, {b, c}, {c, a}}};
-        const auto longest = std::max_element(edges.begin(), edges.end(), [](const auto& e, const auto& f) {
-            return (e.first - e.second).length2() < (f.first - f.second).length2();
-        });
-        return camera_.sees(0.5f * (longest->first + longest->second),
-                            (longest->first - longest->second).length() + options_.margin);
+        return rule_.isTurnedAway(seenCorners(t), normals);
     }
 
     // The sides of each triangle that are too long, seen from this triangle alone, as bits.
     unsigned wantedOf(std::size_t t) const {
         if (turnedAway_[t])
             return 0;
-        const V3i& corners = mesh_.triangles[t];
-        const V3f at[3] = {seen_[std::size_t(corners.x)], seen_[std::size_t(corners.y)], seen_[std::size_t(corners.z)]};
+        const DiceRule::Corners corners = seenCorners(mesh_.triangles[t]);
         unsigned wanted = 0;
-        for (int i = 0; i < 3; ++i)
-            if (isTooLong(at[i], at[(i + 1) % 3]))
+        for (std::size_t i = 0; i < 3; ++i)
+            if (rule_.isTooLong(corners[i], corners[(i + 1) % 3]))
                 wanted |= 1u << i;
-        return wanted && isInView(at[0], at[1], at[2]) ? wanted : 0;
+        return wanted && rule_.isInView(corners) ? wanted : 0;
     }
 
     bool splitOnce() {
@@ -162,9 +142,8 @@ class Dicer {
 
         const auto edges = list_.edges.size(), vertices = mesh_.positions.size();
         Middles middles;
-        const int newEdges = numbered(edges, int(edges), middles.secondHalf, [&](std::size_t e) {
-            return halfPlace[std::size_t(list_.edges[e].place)] >= 0;
-        });
+        const int newEdges = numbered(edges, int(edges), middles.secondHalf,
+                                      [&](std::size_t e) { return halfPlace[std::size_t(list_.edges[e].place)] >= 0; });
         const std::size_t split = std::size_t(newEdges) - edges;
         middles.shift = int(vertices) - int(edges);
         mesh_.positions.resize(vertices + split);
@@ -243,9 +222,7 @@ class Dicer {
             count += (middle[i] = middles.of(std::size_t(sides[i]))) >= 0;
         if (count == 0)
             return parts.set(at, corners, sides);
-        int first = 0; // turned so that edge 0 is split and, of two, edge 2 is not
-        while (middle[first] < 0 || (count == 2 && middle[(first + 2) % 3] >= 0))
-            ++first;
+        const int first = DiceRule::firstCorner(count, [&](int i) { return middle[i] >= 0; });
         const int next = (first + 1) % 3, last = (first + 2) % 3;
         const int a = corners[first], b = corners[next], c = corners[last];
         const int ab = middle[first], bc = middle[next], ca = middle[last];
@@ -275,7 +252,7 @@ class Dicer {
         }
         parts.set(at, {ab, b, bc}, {half(first, b), half(next, b), overB});
         const auto place = [this](int v) { return mesh_.positions[std::size_t(v)]; };
-        if ((place(a) - place(bc)).length2() <= (place(ab) - place(c)).length2()) {
+        if (DiceRule::isCutFromA(place(a), place(ab), place(bc), place(c))) {
             const int across = join(a, bc);
             parts.set(at + 1, {a, ab, bc}, {half(first, a), overB, across});
             parts.set(at + 2, {a, bc, c}, {across, half(next, c), sides[last]});
@@ -286,10 +263,10 @@ class Dicer {
         }
     }
 
-    const Camera& camera_;
+    const DiceRule rule_;
     const DiceOptions& options_;
     SurfaceMesh mesh_;
-    std::vector<V3f> seen_;        ///< positions where the camera is
+    std::vector<V3f> seen_; ///< positions where the camera is
     EdgeList list_;
     std::vector<char> turnedAway_; ///< of each triangle, as those it was cut from
 };

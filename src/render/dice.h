@@ -26,4 +26,12 @@ struct DiceOptions {
 /// UV seams, so no crack opens between coarse and fine. Normals are interpolated; UVs and faces are left out.
 SurfaceMesh diced(const SurfaceMesh& surface, const Camera& camera, const DiceOptions& options);
 
+/// Dicing ends after so many rounds: 24 halve the largest edge a float tells from the smallest.
+inline constexpr int mostDiceRounds = 24;
+
+/// How many triangles diced() will leave, triangle by triangle: nothing is made. Exact but where a neighbour alone
+/// splits an edge, at the border of the view and of what is turned away. \param surface  where the camera is;
+/// `options.toPicture` is not applied
+std::size_t dicedTriangles(const SurfaceMesh& surface, const Camera& camera, const DiceOptions& options);
+
 } // namespace patina

@@ -68,8 +68,8 @@ class ExpressionChecker {
     const CheckContext& context_;
     Findings& findings_;
     Scope& scope_;
-    int nodes_ = 0; ///< of the whole expression that is being resolved, `let`s put in
-    int depth_ = 0; ///< of resolveNode's recursion
+    int nodes_ = 0;                               ///< of the whole expression that is being resolved, `let`s put in
+    int depth_ = 0;                               ///< of resolveNode's recursion
     std::map<std::string, ImageChannels> images_; ///< by path: a `repeat` asks for the same one at every step
 };
 

@@ -1,4 +1,5 @@
-// accessibility(6mm, soft=2mm, global=yes), exposure and wetness(sky=overcast, latitude=45, months=(4, 9), rays=256, ground=yes).
+// accessibility(6mm, soft=2mm, global=yes), exposure and wetness(sky=overcast, latitude=45, months=(4, 9), rays=256,
+// ground=yes).
 
 #include "base/names.h"
 #include "operators/fields/field_store.h"

@@ -34,11 +34,12 @@ struct Curve {
 /// A map over the surface as a tree. What a checked program can hold, by kind:
 /// - number: `number`, µm where `isLength`
 /// - string: `text` is a file, relative names joined to the script's folder; only the first argument of `texture`
-/// - name: `text` is a field (`exposure`, `wetness`, `slope`, `elevation`), or an argument of `texture` or `vertices`: a
+/// - name: `text` is a field (`exposure`, `wetness`, `slope`, `elevation`), or an argument of `texture` or `vertices`:
+/// a
 ///   channel or an attribute
 /// - call: `text` is the function: `texture` (of a file), `vertices`, `noise`, `turbulence`, `facing`, `min`, `max`,
-///   `clamp`, `mix`, `pow`, `smoothstep`, its `children` their arguments, whose number is checked; of `accessibility` they
-///   are always three: radius, softness (0: none), 1 where it is global
+///   `clamp`, `mix`, `pow`, `smoothstep`, its `children` their arguments, whose number is checked; of `accessibility`
+///   they are always three: radius, softness (0: none), 1 where it is global
 /// - unary: `text` is `-`, one child; binary: `+`, `-`, `*` or `/`, two
 /// - growth: `growth`, of texture(BD.linear_1.20)
 /// - curve: `text` is its name, `curve`, and one child: its argument
@@ -182,7 +183,7 @@ struct Program {
     std::string sourceText;
     std::vector<Statement> statements; ///< the first is NewMetal or OpenFile
     std::vector<Parameter> parameters;
-    std::vector<Curve> curves; ///< in the order of their declarations
+    std::vector<Curve> curves;         ///< in the order of their declarations
     std::optional<std::uint64_t> seed; ///< of `seed N;`
     std::vector<Diagnostic> warnings;
 };

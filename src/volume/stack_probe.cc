@@ -60,9 +60,9 @@ struct StackProbe::Nest {
         return phi / scale.voxelSize;
     }
 
-    // How far from the base a crossing s along the line is. Within a voxel phi_0 itself says it, a true distance whatever
-    // its trilinear slope beside an edge, and whatever the angle between the line and the voxels' normal; from two voxels
-    // on it is the way along the line, which a crease's other side does not shorten.
+    // How far from the base a crossing s along the line is. Within a voxel phi_0 itself says it, a true distance
+    // whatever its trilinear slope beside an edge, and whatever the angle between the line and the voxels' normal; from
+    // two voxels on it is the way along the line, which a crease's other side does not shorten.
     double distanceFromBase(Line& line, double base, double s) const {
         const double along = s - base, share = std::clamp(2.0 - std::abs(along), 0.0, 1.0);
         if (share == 0.0)
@@ -185,7 +185,8 @@ struct StackProbe::Nest {
         const Imath::V3d start = point;
         for (int i = 0; i < 12; ++i) {
             Imath::V3d gradient;
-            const double phi = sampler.valueAndGradient(sampler.reference(), sampler.locate(point), gradient) / scale.voxelSize;
+            const double phi =
+                sampler.valueAndGradient(sampler.reference(), sampler.locate(point), gradient) / scale.voxelSize;
             gradient /= scale.voxelSize;
             const double squared = gradient.length2();
             if (squared < 1e-3 || (point - start).length2() > 9.0)
@@ -248,8 +249,7 @@ struct StackProbe::Nest {
 
 StackProbe::StackProbe(const LayerVolume& volume)
     : nest_(new Nest{NestSampler(volume.grids()), volume.scale(), volume.layerCount(),
-                     volume.grids().exteriorBand + 2.0, volume.grids().interiorBand + 1.0,
-                     hasPores(volume)}) {}
+                     volume.grids().exteriorBand + 2.0, volume.grids().interiorBand + 1.0, hasPores(volume)}) {}
 StackProbe::~StackProbe() = default;
 StackProbe::StackProbe(StackProbe&&) noexcept = default;
 
@@ -263,12 +263,14 @@ Imath::V3d StackProbe::reliefSlope(const Imath::V3d& point, const Imath::V3d& no
     const Nest& nest = *nest_;
     const auto slopeOf = [&](int k, double offset) {
         Imath::V3d gradient;
-        nest.sampler.valueAndGradient(k, nest.sampler.locate((point + normal * offset) / nest.scale.voxelSize), gradient);
+        nest.sampler.valueAndGradient(k, nest.sampler.locate((point + normal * offset) / nest.scale.voxelSize),
+                                      gradient);
         const double along = gradient.dot(normal);
         // Steeper than 1 in 0.05 is a wall, which no height has.
         return (normal * along - gradient) / std::max(along, 0.05 * gradient.length() + 1e-300);
     };
-    return slopeOf(nest.layers, reading.baseOffset + reading.height) - slopeOf(nest.sampler.reference(), reading.baseOffset);
+    return slopeOf(nest.layers, reading.baseOffset + reading.height) -
+           slopeOf(nest.sampler.reference(), reading.baseOffset);
 }
 
 StackProbe::Reading StackProbe::read(const Imath::V3d& point, const Imath::V3d& normal, double* thicknessUm) const {

@@ -62,7 +62,8 @@ TEST(PolishArea, OfASinusoidFollowsItsAbbottCurve) {
         EXPECT_NEAR(*report.heightUm, cut, 0.02) << fraction;
         EXPECT_NEAR(areaHigherThan(before, *report.heightUm), fraction, 0.005) << fraction;
         expectCutAt(*report.heightUm, before, *piece->volume);
-        // Off the sheet's edges, which have a say in the height: a (sin πA - πA cos πA) / π at the A of the height found.
+        // Off the sheet's edges, which have a say in the height: a (sin πA - πA cos πA) / π at the A of the height
+        // found.
         const double part = std::acos((*report.heightUm - 1.0) / a) / M_PI;
         const double removed = a * (std::sin(M_PI * part) - M_PI * part * std::cos(M_PI * part)) / M_PI;
         EXPECT_NEAR(meanHeight(before) - meanHeight(*piece->volume), removed, 0.005 * removed + 0.0005) << fraction;
@@ -180,8 +181,8 @@ TEST(PolishArea, OfAMaterialGoesOnUntilItShowsOnTheFraction) {
 }
 
 TEST(PolishArea, MeasuresHeightsAsThicknessesBesideSharpEdges) {
-    // Even films over roofs of 45 degrees: up from a valley's bottom a line is 1.4 times as long as they are thick. Half
-    // the depth is removed, so the soot shows where the cut lies as far below it as the dirt is thick.
+    // Even films over roofs of 45 degrees: up from a valley's bottom a line is 1.4 times as long as they are thick.
+    // Half the depth is removed, so the soot shows where the cut lies as far below it as the dirt is thick.
     const auto roofs = [](double x, double) { return std::abs(std::fmod(x, 10.0) - 5.0); };
     const auto piece = test::makePiece(test::relief(60.f, 120, roofs), test::voxelScale(), 7.0);
     auto work = piece->work();

@@ -109,9 +109,9 @@ class Reliefs : public testing::TestWithParam<int> {
 
     /// Compares the stack with the layers expected at a factor of the map.
     ///
-    /// Trilinear reading rounds off the edge of a plateau between two voxels, by up to an eighth of the change of slope,
-    /// and what is curved: also of a nest that is exact in every voxel it is up to 0.028 voxel off. So single heights
-    /// are compared with what is read of that nest; means and volumes with the closed form.
+    /// Trilinear reading rounds off the edge of a plateau between two voxels, by up to an eighth of the change of
+    /// slope, and what is curved: also of a nest that is exact in every voxel it is up to 0.028 voxel off. So single
+    /// heights are compared with what is read of that nest; means and volumes with the closed form.
     ///
     /// Exposed is where the outermost layer is not. A film that runs out over a slope does so at the next voxel, so the
     /// area is carried on to zero from those where it is thinner than 0.1, 0.2, 0.3 voxel.
@@ -121,7 +121,8 @@ class Reliefs : public testing::TestWithParam<int> {
         const std::size_t count = layersAt(0.5).size();
         ASSERT_EQ(std::size_t(piece_->volume->layerCount()), count);
         std::vector<double> exactUm(count), um(count), volume(count, 0.0), expectedVolume(count, 0.0);
-        double area = 0.0, thinner[3] = {}, bare = 0.0, worst = 0.0, ofReading = 0.0, ofOperator = 0.0, squares = 0.0, total = 0.0, expectedTotal = 0.0;
+        double area = 0.0, thinner[3] = {}, bare = 0.0, worst = 0.0, ofReading = 0.0, ofOperator = 0.0, squares = 0.0,
+               total = 0.0, expectedTotal = 0.0;
         for (const Place& place : base_.places()) {
             const auto reading = probe.read(place.position, place.normal, um.data());
             ASSERT_TRUE(reading.found);
@@ -159,7 +160,8 @@ class Reliefs : public testing::TestWithParam<int> {
         EXPECT_NEAR(total / expectedTotal, 1.0, 0.005) << base_.name;
         for (std::size_t k = 0; k < count; ++k) {
             // A second coat on a ball of 30 voxels is 0.3 % thin, and a third of it is left (0.60).
-            EXPECT_NEAR(volume[k] / expectedVolume[k], 1.0, base_.name == "sphere" ? 0.0065 : 0.005) << base_.name << ", layer " << k + 1;
+            EXPECT_NEAR(volume[k] / expectedVolume[k], 1.0, base_.name == "sphere" ? 0.0065 : 0.005)
+                << base_.name << ", layer " << k + 1;
         }
         EXPECT_NEAR(exposed / area, bare / area, 0.005) << base_.name;
     }

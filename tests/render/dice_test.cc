@@ -112,6 +112,20 @@ TEST(Diced, whatIsSeenIsAsFineAsAPixelAndTheRestIsNot) {
         ASSERT_NEAR(n.length(), 1.f, 1e-5f);
 }
 
+TEST(Diced, itsTrianglesCanBeCountedBefore) {
+    const SurfaceMesh sphere = sphereMesh(12, 1.f);
+    for (const int height : {64, 128, 256}) {
+        DiceOptions options;
+        options.pictureHeight = height;
+        const auto made = double(diced(sphere, closeUp(), options).triangles.size());
+        EXPECT_NEAR(double(dicedTriangles(sphere, closeUp(), options)) / made, 1.0, 0.02) << height;
+        options.mostTriangles = std::size_t(made / 2.0); // the round that passes it is the last
+        EXPECT_NEAR(double(dicedTriangles(sphere, closeUp(), options)),
+                    double(diced(sphere, closeUp(), options).triangles.size()), 0.02 * made)
+            << height;
+    }
+}
+
 // A camera close above the middle of a large triangle sees none of its edges.
 TEST(Diced, aTriangleWhoseEdgesAreOutOfViewIsCutAllTheSame) {
     SurfaceMesh square = squareMesh();

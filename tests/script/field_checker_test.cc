@@ -54,8 +54,7 @@ TEST(FieldArguments, NorthAlongTheModelsUpAxisIsAMistakeWhereTheAxisIsKnown) {
         readScript(script, context);
         FAIL() << "the script was read";
     } catch (const ScriptError& error) {
-        EXPECT_THAT(briefly(error.diagnostics()),
-                    ElementsAre("2:40: north lies along the model's up axis"));
+        EXPECT_THAT(briefly(error.diagnostics()), ElementsAre("2:40: north lies along the model's up axis"));
     }
     context.up = {0.0, 0.0, 1.0};
     EXPECT_NO_THROW(readScript(script, context));

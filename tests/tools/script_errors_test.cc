@@ -40,18 +40,20 @@ TEST(ScriptErrors, AnImageThatIsNoneOrLacksTheChannelIsOne) {
                                 "coat soot 1 texture(\"text.png\")\n"
                                 "let wear = 1 - texture(\"colours.ppm\", height)\n"
                                 "coat soot 1 wear\n");
-    for (const Arguments& line : {Arguments{"check", "wrong.patina"},
-                                  small({"run", "wrong.patina", "strip", "-o", "out"})}) {
+    for (const Arguments& line :
+         {Arguments{"check", "wrong.patina"}, small({"run", "wrong.patina", "strip", "-o", "out"})}) {
         const Outcome outcome = vdbPatina(line, folder.path());
         EXPECT_EQ(outcome.exitCode, 3);
         EXPECT_EQ(outcome.out, "");
-        EXPECT_THAT(outcome.err, HasSubstr("wrong.patina:2:21: error: the texture 'text.png' cannot be read as an image\n"
-                                           "    coat soot 1 texture(\"text.png\")\n"
-                                           "                        ^\n"));
-        EXPECT_THAT(outcome.err, HasSubstr("wrong.patina:3:39: error: the texture 'colours.ppm' has no channel 'height'\n"
-                                           "    let wear = 1 - texture(\"colours.ppm\", height)\n"
-                                           "                                          ^\n"
-                                           "    it has R, G and B"));
+        EXPECT_THAT(outcome.err,
+                    HasSubstr("wrong.patina:2:21: error: the texture 'text.png' cannot be read as an image\n"
+                              "    coat soot 1 texture(\"text.png\")\n"
+                              "                        ^\n"));
+        EXPECT_THAT(outcome.err,
+                    HasSubstr("wrong.patina:3:39: error: the texture 'colours.ppm' has no channel 'height'\n"
+                              "    let wear = 1 - texture(\"colours.ppm\", height)\n"
+                              "                                          ^\n"
+                              "    it has R, G and B"));
         EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
     }
 }

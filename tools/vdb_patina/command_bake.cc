@@ -51,8 +51,9 @@ void addBakeCommand(CLI::App& app, Options& options, Action& action) {
     command->add_option("VOLUME", arguments->volume, "A .vdb that `run` wrote")->required();
     command->add_option("MODEL", arguments->model,
                         "The model it was made from (default: the .obj that `run` wrote beside it)");
-    command->add_option("--report", options.report,
-                        "Where the report goes (default: report.json in the folder, bake_report.json in the volume's)")
+    command
+        ->add_option("--report", options.report,
+                     "Where the report goes (default: report.json in the folder, bake_report.json in the volume's)")
         ->type_name("FILE")
         ->group("Results");
     addGeneralOptions(*command, options);

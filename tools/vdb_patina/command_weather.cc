@@ -183,7 +183,9 @@ void addWeatherCommand(CLI::App& app, Options& options, Action& action) {
                      "Corrosivity category of ISO 9223, C1 to CX (default: the paper's rates)")
         ->type_name("C")
         ->group(group);
-    command->add_flag("--extremes", arguments->extremes, "Two series, for the least and the most of the category (or of the paper's rate)")
+    command
+        ->add_flag("--extremes", arguments->extremes,
+                   "Two series, for the least and the most of the category (or of the paper's rate)")
         ->group(group);
     command->add_option("--latitude", arguments->latitude, "Of the place, degrees, north positive (default 45)")
         ->type_name("DEGREES")

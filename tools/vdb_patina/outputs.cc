@@ -34,8 +34,7 @@ OutputFolder outputFolder(const Options& options, const std::string& name) {
     return OutputFolder(options.output.empty() ? name : options.output);
 }
 
-std::filesystem::path reportFile(const Options& options, const std::filesystem::path& folder,
-                                 const std::string& name) {
+std::filesystem::path reportFile(const Options& options, const std::filesystem::path& folder, const std::string& name) {
     if (options.report.empty())
         return folder / name;
     // Not only found out when all is done.

@@ -147,8 +147,7 @@ void exposePicture(const RenderScene& scene, const View& view, const FeaturesAt&
         lightsOf(options, view.from.azimuthDegrees, scene.setting ? *scene.setting : scene.surface->bounds());
     const Rendering rendering = render(scene, view.camera, lights, settings, console);
     console.info(fmt::format("{} rays traced in {:.2f} s ({:.2f} s of the processors), {:.3g} samples per pixel",
-                             rendering.rays, rendering.seconds, rendering.processorSeconds,
-                             rendering.samplesPerPixel));
+                             rendering.rays, rendering.seconds, rendering.processorSeconds, rendering.samplesPerPixel));
 
     const ImageMetadata metadata{{"Software", "vdb-patina " PATINA_VERSION}, {"Description", description}};
     if (options.exr) {

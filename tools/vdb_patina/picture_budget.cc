@@ -8,9 +8,9 @@ namespace patina::tool {
 
 namespace {
 
-// Of a triangle as it is traced, with its half vertex: the diced surface and its displaced copy, 24 each; the seams, 16;
-// height and the metal's look, 25; Embree's tree with its buffers and our corners, 156. Every layer adds its thickness and
-// its lobe, 36 a vertex. Measured on spheres and pieces of the statuette under one, three and six layers.
+// Of a triangle as it is traced, with its half vertex: the diced surface and its displaced copy, 24 each; the seams,
+// 16; height and the metal's look, 25; Embree's tree with its buffers and our corners, 156. Every layer adds its
+// thickness and its lobe, 36 a vertex. Measured on spheres and pieces of the statuette under one, three and six layers.
 constexpr double bytesPerTriangle = 245.0, bytesPerTriangleAndLayer = 18.0;
 
 } // namespace

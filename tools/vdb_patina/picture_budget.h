@@ -12,10 +12,9 @@ constexpr double bytesPerPixel(bool exr) {
     return exr ? 160.0 : 27.0;
 }
 
-/// Memory of the picture that `options` ask for of a model under so many layers: the surface cut into triangles of a pixel
-/// where the camera sees it (dicedTriangles(), of the bare model), their trees and stacks, and the picture; 0 without a
-/// picture.
-/// \throws Error (command line) where --camera or --closeup cannot be read
+/// Memory of the picture that `options` ask for of a model under so many layers: the surface cut into triangles of a
+/// pixel where the camera sees it (dicedTriangles(), of the bare model), their trees and stacks, and the picture; 0
+/// without a picture. \throws Error (command line) where --camera or --closeup cannot be read
 double pictureBytes(const Options& options, const Model& model, int layers);
 
 } // namespace patina::tool

@@ -111,8 +111,7 @@ void checkBudget(const Task& task, const Options& options, Console& console) {
     Budget budget = estimateBudget(task.program, whole ? whole->work() : task.model.surface, task.model.scale,
                                    options.resolution, whole ? whole->whole().triangles.size() : 0);
     const int layers = mostLevelSets(task.program) - 1;
-    budget.peakBytes =
-        std::max(budget.peakBytes, budget.residentBytes + pictureBytes(options, task.model, layers));
+    budget.peakBytes = std::max(budget.peakBytes, budget.residentBytes + pictureBytes(options, task.model, layers));
     const double limit = options.budgetGiB > 0.0 ? options.budgetGiB * 1073741824.0 : 0.8 * machineMemoryBytes();
     const std::string text = fmt::format(
         "budget: {:.3g} million voxels in the band, volume {}, peak memory {}, disk {}", budget.activeVoxels * 1e-6,

@@ -68,8 +68,9 @@ TEST(Statue, FilmsAtTrueScaleStandToHalfAPercent) {
             std::sort(errors[k].begin(), errors[k].end());
             const double mean = sum[k] / count / expected[k] - 1.0;
             const double most = errors[k][errors[k].size() * 99 / 100];
-            std::printf("%s, film %d: mean %+.3f %%, 99 %% of the area within %.3f %%, at most %.1f %%, read %zu of %zu\n",
-                        where, k, 100.0 * mean, 100.0 * most, 100.0 * errors[k].back(), errors[k].size(), places / 3);
+            std::printf(
+                "%s, film %d: mean %+.3f %%, 99 %% of the area within %.3f %%, at most %.1f %%, read %zu of %zu\n",
+                where, k, 100.0 * mean, 100.0 * most, 100.0 * errors[k].back(), errors[k].size(), places / 3);
             EXPECT_NEAR(mean, 0.0, 0.005) << where << k;
             EXPECT_LT(most, 0.005) << where << k;
         }
