@@ -107,6 +107,8 @@ TrianglePoint closestOnTriangle(const V3d& p, const V3d& a, const V3d& b, const 
     return best;
 }
 
+constexpr float leastFacing = 0.3f; // cosine
+
 /// A triangle's corners side by side: a query touches hundreds of scattered triangles, and memory is what it waits for.
 struct Corners {
     V3f a, b, c;
@@ -115,6 +117,7 @@ struct Corners {
 struct ClosestSearch {
     const Corners* corners;
     V3d position;
+    V3f facing; ///< 0: any
     float radius;
     int triangle = -1;
     float distance = 0.f;
@@ -125,6 +128,11 @@ bool visitTriangle(RTCPointQueryFunctionArguments* arguments) {
     auto& search = *static_cast<ClosestSearch*>(arguments->userPtr);
     const int index = static_cast<int>(arguments->primID);
     const Corners& corners = search.corners[index];
+    if (search.facing != V3f(0.f)) {
+        const V3f normal = (corners.b - corners.a).cross(corners.c - corners.a);
+        if (!((normal ^ search.facing) > leastFacing * normal.length()))
+            return false;
+    }
     const TrianglePoint point = closestOnTriangle(search.position, V3d(corners.a), V3d(corners.b), V3d(corners.c));
     // Distances are compared as floats, so that neighbours which share the closest corner or edge tie exactly.
     const auto distance = static_cast<float>(std::sqrt(point.squaredDistance));
@@ -323,11 +331,21 @@ bool RayScene::occluded(const V3f& origin, const V3f& direction, float nearest, 
 }
 
 std::optional<RayScene::Closest> RayScene::closest(const V3f& position, float radius) const {
+    return search(position, radius, V3f(0.f));
+}
+
+std::optional<RayScene::Closest> RayScene::closestFacing(const V3f& position, const V3f& direction,
+                                                         float radius) const {
+    return search(position, radius, direction.normalized());
+}
+
+std::optional<RayScene::Closest> RayScene::search(const V3f& position, float radius, const V3f& facing) const {
     if (scene_->corners.empty())
         return std::nullopt;
     ClosestSearch search;
     search.corners = scene_->corners.data();
     search.position = V3d(position);
+    search.facing = facing;
     search.radius = radius;
     RTCPointQuery query;
     query.x = position.x;

@@ -55,9 +55,13 @@ class RayScene {
     /// distance from the surface over the size of its triangles: pass a radius where one is known.
     std::optional<Closest> closest(const Imath::V3f& position,
                                    float radius = std::numeric_limits<float>::infinity()) const;
+    /// The same among triangles whose normals, by their winding, lie within 72 degrees of a direction: of two surfaces
+    /// that face each other, the one that faces this way.
+    std::optional<Closest> closestFacing(const Imath::V3f& position, const Imath::V3f& direction, float radius) const;
 
   private:
     struct Scene;
+    std::optional<Closest> search(const Imath::V3f& position, float radius, const Imath::V3f& facing) const;
     std::unique_ptr<Scene> scene_;
 };
 

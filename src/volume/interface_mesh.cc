@@ -8,8 +8,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace patina {
@@ -56,6 +58,47 @@ Imath::V3f normalOf(const Imath::V3d& slope) {
     return slope.length() > 0.0 ? Imath::V3f(slope.normalized()) : Imath::V3f(0, 0, 1);
 }
 
+std::vector<Imath::V3f> slopesOf(const NestSampler& sampler, int k, double voxelSize,
+                                 const std::vector<Imath::V3f>& points) {
+    std::vector<Imath::V3f> slopes(points.size());
+    tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t i) {
+        slopes[i] = Imath::V3f(slopeAt(sampler, k, Imath::V3d(points[i]) / voxelSize) / voxelSize);
+    });
+    return slopes;
+}
+
+// How far from a point the solid of phi_k is left when going along a unit direction; voxels, -1 to 1, of several the
+// nearest on the side that the point's own sign tells, or else on the other.
+std::optional<double> wayOut(const NestSampler& sampler, int k, const Imath::V3d& from, const Imath::V3d& along) {
+    constexpr int steps = 8; // within an eighth of a voxel no gap opens and closes that pictures show
+    const auto phi = [&](double way) { return sampler.value(k, sampler.locate(from + along * way)); };
+    const double here = phi(0.0);
+    for (const double side : here < 0.0 ? std::array{1.0, -1.0} : std::array{-1.0, 1.0}) {
+        double before = 0.0, phiBefore = here;
+        for (int step = 1; step <= steps; ++step) {
+            double after = side * step / steps, phiAfter = phi(after);
+            const double inner = side > 0.0 ? phiBefore : phiAfter, outer = side > 0.0 ? phiAfter : phiBefore;
+            if (inner < 0.0 && outer >= 0.0) {
+                // The secant of a bracket, its older end halved where it stays (Illinois): phi is nearly linear here.
+                for (int turn = 0; turn < 16 && std::abs(after - before) > 1e-6; ++turn) {
+                    const double next = before - phiBefore * (after - before) / (phiAfter - phiBefore);
+                    const double phiNext = phi(next);
+                    if ((phiNext < 0.0) == (phiAfter < 0.0))
+                        phiBefore *= 0.5;
+                    else
+                        before = after, phiBefore = phiAfter;
+                    after = next, phiAfter = phiNext;
+                    if (std::abs(phiAfter) < 1e-5 * std::abs(outer - inner))
+                        break;
+                }
+                return after;
+            }
+            before = after, phiBefore = phiAfter;
+        }
+    }
+    return std::nullopt;
+}
+
 } // namespace
 
 SurfaceMesh interfaceMesh(const LayerVolume& volume, int layer) {
@@ -98,35 +141,31 @@ void settleOnInterface(const LayerVolume& volume, int layer, SurfaceMesh& mesh) 
     const NestSampler sampler(volume.grids());
     const double voxelSize = volume.scale().voxelSize;
     tbb::parallel_for(std::size_t(0), mesh.positions.size(), [&](std::size_t i) {
-        const Imath::V3d start = Imath::V3d(mesh.positions[i]) / voxelSize;
-        Imath::V3d at = start, slope = slopeAt(sampler, layer, at);
-        // Newton's steps along the normal; the field is nearly linear over a voxel.
-        bool arrived = false;
-        for (int step = 0; step < 4 && !arrived && slope.length() > 0.0; ++step) {
-            const double away = sampler.value(layer, sampler.locate(at)) / slope.length2();
-            arrived = std::abs(away) * slope.length() < 1e-4;
-            at -= slope * away;
-            slope = slopeAt(sampler, layer, at);
-        }
-        if (!arrived || (at - start).length() > 1.0) {
-            slope = slopeAt(sampler, layer, start);
-        } else {
-            mesh.positions[i] = Imath::V3f(at * voxelSize);
-        }
-        mesh.normals[i] = normalOf(slope);
+        const Imath::V3d start = Imath::V3d(mesh.positions[i]) / voxelSize, along(mesh.normals[i]);
+        if (const auto way = wayOut(sampler, layer, start, along))
+            mesh.positions[i] = Imath::V3f((start + along * *way) * voxelSize);
     });
 }
 
-std::vector<Imath::V3f> baseNormals(const LayerVolume& volume, const std::vector<Imath::V3f>& points) {
+std::vector<Imath::V3f> interfaceSlopes(const LayerVolume& volume, int layer, const std::vector<Imath::V3f>& points) {
+    const NestSampler sampler(volume.grids());
+    return slopesOf(sampler, layer, volume.scale().voxelSize, points);
+}
+
+std::vector<Imath::V3f> baseSlopes(const LayerVolume& volume, const std::vector<Imath::V3f>& points) {
+    const NestSampler sampler(volume.grids());
+    return slopesOf(sampler, sampler.reference(), volume.scale().voxelSize, points);
+}
+
+std::vector<float> baseDistances(const LayerVolume& volume, const std::vector<Imath::V3f>& points) {
     const NestSampler sampler(volume.grids());
     const double voxelSize = volume.scale().voxelSize;
-    std::vector<Imath::V3f> normals(points.size());
+    std::vector<float> distances(points.size());
     tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t i) {
-        const Imath::V3d slope = slopeAt(sampler, sampler.reference(), Imath::V3d(points[i]) / voxelSize);
-        // Within the band phi rises by about a voxel over a voxel.
-        normals[i] = slope.length() > 0.1 * voxelSize ? Imath::V3f(slope.normalized()) : Imath::V3f(0.f);
+        const NestCell cell = sampler.locate(Imath::V3d(points[i]) / voxelSize);
+        distances[i] = float(sampler.value(sampler.reference(), cell) / voxelSize);
     });
-    return normals;
+    return distances;
 }
 
 bool isInsideVolume(const LayerVolume& volume, const Imath::V3f& point) {

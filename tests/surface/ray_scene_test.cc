@@ -109,6 +109,22 @@ TEST(RayScene, batchesMeetWhatSingleRaysMeet) {
     }
 }
 
+TEST(RayScene, closestFacingPassesOverTheNearerSideOfAGap) {
+    // The lower triangle faces up, the upper one, half a unit above it, down.
+    const RayScene scene(
+        {V3f(-1, -1, 0), V3f(1, -1, 0), V3f(0, 1, 0), V3f(-1, -1, 0.5f), V3f(1, -1, 0.5f), V3f(0, 1, 0.5f)},
+        {V3i(0, 1, 2), V3i(3, 5, 4)});
+    const V3f point(0.f, 0.f, 0.4f), up(0.f, 0.f, 1.f);
+    EXPECT_EQ(scene.closest(point)->point.triangle, 1);
+    EXPECT_EQ(scene.closestFacing(point, -up, 1.f)->point.triangle, 1);
+    const auto lower = scene.closestFacing(point, up * 3.f, 1.f);
+    ASSERT_TRUE(lower);
+    EXPECT_EQ(lower->point.triangle, 0);
+    EXPECT_FLOAT_EQ(lower->distance, 0.4f);
+    EXPECT_FALSE(scene.closestFacing(point, up, 0.3f));
+    EXPECT_FALSE(scene.closestFacing(point, V3f(1.f, 0.f, 0.f), 1.f));
+}
+
 TEST(RayScene, closestPointMatchesBruteForce) {
     PATINA_NEEDS_MODEL("suzanne.obj");
     const SurfaceMesh surface =

@@ -12,11 +12,10 @@
 #include "render/film.h"
 #include "render/path_tracer.h"
 #include "render/stack_shader.h"
-#include "surface/ray_scene.h"
+#include "render/voxel_surface.h"
 #include "volume/interface_mesh.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <chrono>
@@ -67,12 +66,11 @@ struct ShownSurface {
         diced->displacer = std::make_unique<const Displacer>(diced->surface);
     }
 
-    // The voxels' own surface. Its normals are the model's, tilted as the interface is against the base: facets and
-    // voxels are no more seen than in the mesh.
-    // As the mesh is, it is cut into triangles of about a pixel: shading follows the field between the voxels.
+    // The voxels' own surface, cut into triangles of about a pixel as the mesh is.
     void takeVolume(const LayerVolume& volume, const Model& model, const View& view, const Turn& turn,
                     const Options& options) {
         reading = StackReading::vertices;
+<<<<<<< HEAD
         shown = interfaceMesh(volume, volume.layerCount());
         if (options.dice > 0.0) {
             DiceOptions dice = dicingOf(view, options, volume.scale().voxelSize);
@@ -95,6 +93,20 @@ struct ShownSurface {
             if (under[v].length2() > 0.f && (underVoxels.normals[v] ^ under[v]) > 0.5f && tilted.length2() > 0.04f)
                 shown.normals[v] = tilted.normalized();
         });
+=======
+        DiceOptions dice;
+        dice.pictureHeight = view.height;
+        dice.pixelsPerEdge = float(options.dice);
+        dice.toPicture = turn;
+        dice.margin = float(volume.scale().voxelSize);
+        VoxelSurface voxels =
+            options.dice > 0.0
+                ? voxelSurface(volume, model.surface,
+                               [&](const SurfaceMesh& coarse) { return patina::diced(coarse, view.camera, dice); })
+                : voxelSurface(volume, model.surface);
+        shown = std::move(voxels.shown);
+        underVoxels = std::move(voxels.under);
+>>>>>>> 9ef5865 (Volume close-ups: vertices settle along their triangles' normals without turning any over, and each side of a gap reads its own half of the model)
     }
 
     const SurfaceMesh& base() const { return diced ? diced->surface : underVoxels; }
