@@ -52,8 +52,8 @@ OwnNormal ownNormal(const V3f& outward, const V3f& lies, const V3f& slope) {
 // \param cut  voxels that the base lies inside the model's point
 V3f shadingNormal(const V3f& ofModel, float cut, const OwnNormal& own, const V3f& lies, const V3f& slope,
                   const V3f& baseSlope) {
-    // Over a thin edge the model's normal may look the other way, and in a crease that the voxels fill its sides are
-    // taken by turns: the interface's own is right there. An edge that the voxels round off the model keeps.
+    // Over a thin edge the model's normal may look the other way, and a crease that the voxels fill has another shape:
+    // the interface's own is right there. An edge that the voxels round off the model keeps.
     const float edge = smoothStep(0.02f, 0.1f, cut);
     const float trustInModel =
         smoothStep(0.75f + (facing - 0.75f) * edge, 0.95f + (0.5f - 0.95f) * edge, ofModel ^ own.normal) *
@@ -85,24 +85,32 @@ VoxelSurface voxelSurface(const LayerVolume& volume, const SurfaceMesh& model,
     under.triangles = shown.triangles;
     const std::vector<V3f> slopes = interfaceSlopes(volume, volume.layerCount(), shown.positions);
     const std::vector<V3f> baseSlopes = patina::baseSlopes(volume, shown.positions);
-    const RayScene rays(model.positions, model.triangles);
-    const float voxel = float(volume.scale().voxelSize);
     const std::vector<V3f> lies = angleWeightedNormals(shown.positions, shown.triangles);
+    const RayScene rays(model.positions, model.triangles);
+    const float voxel = float(volume.scale().voxelSize), blend = 0.3f * voxel;
     std::vector<OwnNormal> own(shown.positions.size());
+    std::vector<V3f> ofModel(shown.positions.size());
     tbb::parallel_for(std::size_t(0), shown.positions.size(), [&](std::size_t v) {
         own[v] = ownNormal(shown.normals[v], lies[v], slopes[v]);
-        const V3f& outward = own[v].normal;
-        auto nearest = rays.closest(shown.positions[v]);
+        const V3f &at = shown.positions[v], &outward = own[v].normal;
+        auto nearest = rays.closest(at);
         // The other side of a gap may be nearer than the own one.
         if (!faces(model, nearest->point.triangle, outward))
-            if (const auto same = rays.closestFacing(shown.positions[v], outward, nearest->distance + 1.5f * voxel))
+            if (const auto same = rays.closestFacing(at, outward, nearest->distance + 1.5f * voxel))
                 nearest = same;
         under.positions[v] = V3f(positionAt(model, nearest->point));
-        under.normals[v] = V3f(normalAt(model, nearest->point));
+        under.normals[v] = ofModel[v] = V3f(normalAt(model, nearest->point));
+        if ((ofModel[v] ^ outward) > 0.98f)
+            return;
+        // Beside a crease or an edge, which the voxels round, the surface goes from one side to the other and back.
+        if (const auto other = rays.closestFacing(at, outward, nearest->distance + blend, ofModel[v])) {
+            const float share = 0.5f - 0.5f * smoothStep(0.f, blend, other->distance - nearest->distance);
+            ofModel[v] = (ofModel[v] * (1.f - share) + V3f(normalAt(model, other->point)) * share).normalized();
+        }
     });
     const std::vector<float> cut = baseDistances(volume, under.positions);
     tbb::parallel_for(std::size_t(0), shown.positions.size(), [&](std::size_t v) {
-        shown.normals[v] = shadingNormal(under.normals[v], cut[v], own[v], lies[v], slopes[v], baseSlopes[v]);
+        shown.normals[v] = shadingNormal(ofModel[v], cut[v], own[v], lies[v], slopes[v], baseSlopes[v]);
     });
     return surface;
 }

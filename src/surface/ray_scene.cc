@@ -107,7 +107,7 @@ TrianglePoint closestOnTriangle(const V3d& p, const V3d& a, const V3d& b, const 
     return best;
 }
 
-constexpr float leastFacing = 0.3f; // cosine
+constexpr float leastFacing = 0.3f, mostAlike = 0.8f; // cosines
 
 /// A triangle's corners side by side: a query touches hundreds of scattered triangles, and memory is what it waits for.
 struct Corners {
@@ -118,6 +118,7 @@ struct ClosestSearch {
     const Corners* corners;
     V3d position;
     V3f facing; ///< 0: any
+    V3f unlike; ///< 0: none
     float radius;
     int triangle = -1;
     float distance = 0.f;
@@ -130,7 +131,8 @@ bool visitTriangle(RTCPointQueryFunctionArguments* arguments) {
     const Corners& corners = search.corners[index];
     if (search.facing != V3f(0.f)) {
         const V3f normal = (corners.b - corners.a).cross(corners.c - corners.a);
-        if (!((normal ^ search.facing) > leastFacing * normal.length()))
+        const float length = normal.length();
+        if (!((normal ^ search.facing) > leastFacing * length) || (normal ^ search.unlike) > mostAlike * length)
             return false;
     }
     const TrianglePoint point = closestOnTriangle(search.position, V3d(corners.a), V3d(corners.b), V3d(corners.c));
@@ -331,21 +333,23 @@ bool RayScene::occluded(const V3f& origin, const V3f& direction, float nearest, 
 }
 
 std::optional<RayScene::Closest> RayScene::closest(const V3f& position, float radius) const {
-    return search(position, radius, V3f(0.f));
+    return search(position, radius, V3f(0.f), V3f(0.f));
 }
 
 std::optional<RayScene::Closest> RayScene::closestFacing(const V3f& position, const V3f& direction,
-                                                         float radius) const {
-    return search(position, radius, direction.normalized());
+                                                         float radius, const V3f& unlike) const {
+    return search(position, radius, direction.normalized(), unlike);
 }
 
-std::optional<RayScene::Closest> RayScene::search(const V3f& position, float radius, const V3f& facing) const {
+std::optional<RayScene::Closest> RayScene::search(const V3f& position, float radius, const V3f& facing,
+                                                  const V3f& unlike) const {
     if (scene_->corners.empty())
         return std::nullopt;
     ClosestSearch search;
     search.corners = scene_->corners.data();
     search.position = V3d(position);
     search.facing = facing;
+    search.unlike = unlike;
     search.radius = radius;
     RTCPointQuery query;
     query.x = position.x;

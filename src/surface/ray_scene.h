@@ -57,11 +57,14 @@ class RayScene {
                                    float radius = std::numeric_limits<float>::infinity()) const;
     /// The same among triangles whose normals, by their winding, lie within 72 degrees of a direction: of two surfaces
     /// that face each other, the one that faces this way.
-    std::optional<Closest> closestFacing(const Imath::V3f& position, const Imath::V3f& direction, float radius) const;
+    /// \param unlike  a unit normal: where it is given, only triangles that are turned against it by 37 degrees or more
+    std::optional<Closest> closestFacing(const Imath::V3f& position, const Imath::V3f& direction, float radius,
+                                         const Imath::V3f& unlike = Imath::V3f(0.f)) const;
 
   private:
     struct Scene;
-    std::optional<Closest> search(const Imath::V3f& position, float radius, const Imath::V3f& facing) const;
+    std::optional<Closest> search(const Imath::V3f& position, float radius, const Imath::V3f& facing,
+                                  const Imath::V3f& unlike) const;
     std::unique_ptr<Scene> scene_;
 };
 

@@ -123,6 +123,8 @@ TEST(RayScene, closestFacingPassesOverTheNearerSideOfAGap) {
     EXPECT_FLOAT_EQ(lower->distance, 0.4f);
     EXPECT_FALSE(scene.closestFacing(point, up, 0.3f));
     EXPECT_FALSE(scene.closestFacing(point, V3f(1.f, 0.f, 0.f), 1.f));
+    EXPECT_FALSE(scene.closestFacing(point, up, 1.f, V3f(0.f, 0.28f, 0.96f))); // 16 degrees
+    EXPECT_TRUE(scene.closestFacing(point, up, 1.f, V3f(0.f, 0.8f, 0.6f)));    // 53 degrees
 }
 
 TEST(RayScene, closestPointMatchesBruteForce) {
