@@ -46,9 +46,8 @@ void keepFilms(Workpiece& work, const std::vector<std::uint16_t>& lowest, const 
                 p -= gradient * (phi / std::max(gradient.length2(), 1e-6 * voxelSize * voxelSize));
                 if ((p - expected).length() > 0.5)
                     continue; // beside an edge of what has grown
-                sampler.valueAndGradient(k, sampler.locate(p), gradient);
                 ratio[at] = static_cast<float>(
-                    std::clamp(gradient.length() / voxelSize / std::max(places[at].slope, 1e-6f), 0.8, 1.25));
+                    std::clamp(sampler.slope(k, p) / voxelSize / std::max(places[at].slope, 1e-6f), 0.8, 1.25));
             }
         });
     }
@@ -123,7 +122,7 @@ OperationReport growLayer(Workpiece& work, const std::string& material, double t
                     const NestCell cell = sampler.locate(foot.position);
                     Imath::V3d gradient;
                     const double phi = sampler.valueAndGradient(k, cell, gradient);
-                    const double slope = feet.slope(gradient);
+                    const double slope = feet.slope(k, foot.position);
                     // The first of them is remembered: that is where it begins anew if it is in none.
                     const bool isThere = sampler.value(k - 1, cell) - phi > nanometre * slope;
                     if (!isThere && !(everywhere && lowest[at] == 0))
@@ -140,7 +139,7 @@ OperationReport growLayer(Workpiece& work, const std::string& material, double t
                     lowest[at] = static_cast<std::uint16_t>(k);
                     if (far)
                         places[at] = {Imath::V3f(foot.position + gradient.normalized() * (t / voxelSize)),
-                                      static_cast<float>(gradient.length() / voxelSize)};
+                                      static_cast<float>(sampler.slope(k, foot.position) / voxelSize)};
                     if (isThere)
                         break;
                 }

@@ -27,9 +27,10 @@ class InterfaceFoot {
     /// of a voxel the model's closest point serves all interfaces.
     Foot find(int k, const openvdb::Coord& coord, std::size_t at) const;
 
-    /// |grad phi_k| at a foot where its trilinear gradient (scene units per voxel) has been read: scene units per scene
-    /// unit; 1 in a thin stack.
-    double slope(const Imath::V3d& gradient) const { return thinStack_ ? 1.0 : gradient.length() / voxelSize_; }
+    /// |grad phi_k| at a foot, scene units per scene unit; 1 in a thin stack.
+    double slope(int k, const Imath::V3d& position) const {
+        return thinStack_ ? 1.0 : sampler_.slope(k, position) / voxelSize_;
+    }
 
     const NestSampler& sampler() const { return sampler_; }
 

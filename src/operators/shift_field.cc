@@ -33,8 +33,9 @@ ShiftField makeShiftField(Workpiece& work, double thicknessUm, const ThicknessMa
     const bool thickStack = !isThinStack(volume);
     const bool everywhere = !map && !binding.hasBack();
     const bool needDistance = drawn * reach.most > voxelSize;
-    const bool needSlope = thickStack && !(everywhere && drawn * reach.least >=
-                                                             2.0 * voxelSize); // from there on the distance alone counts
+    const bool needSlope =
+        thickStack &&
+        !(everywhere && drawn * reach.least >= 2.0 * voxelSize); // from there on the distance alone counts
     const bool needFeet = thickStack && (needSlope || !everywhere);
 
     // D(phi_0) is phi_0 itself: recomputed from its crossings it would lose the model's edges.
@@ -87,11 +88,8 @@ ShiftField makeShiftField(Workpiece& work, double thicknessUm, const ThicknessMa
                 field.thickness[at] = 0.f; // the back of a sheet takes nothing
                 continue;
             }
-            if (needSlope) {
-                Imath::V3d gradient;
-                sampler.valueAndGradient(top, cell, gradient);
-                field.slope[at] = static_cast<float>(gradient.length() / voxelSize);
-            }
+            if (needSlope)
+                field.slope[at] = static_cast<float>(sampler.slope(top, p) / voxelSize);
             const double factor = map ? clampedFactor(*map, surface, under, clamped[n]) : 1.0;
             field.thickness[at] = static_cast<float>(drawn * factor);
         }

@@ -59,7 +59,8 @@ class Ways {
     }
 
   private:
-    template <typename Visit> void alongEdges(std::size_t t, const Visit& visit) const {
+    template <typename Visit>
+    void alongEdges(std::size_t t, const Visit& visit) const {
         for (int i = 0; i < 3; ++i) {
             const auto a = std::size_t(flat_.triangles[t][i]), b = std::size_t(flat_.triangles[t][(i + 1) % 3]);
             visit(a, b, (flat_.positions[a] - flat_.positions[b]).length());

@@ -336,8 +336,8 @@ std::optional<RayScene::Closest> RayScene::closest(const V3f& position, float ra
     return search(position, radius, V3f(0.f), V3f(0.f));
 }
 
-std::optional<RayScene::Closest> RayScene::closestFacing(const V3f& position, const V3f& direction,
-                                                         float radius, const V3f& unlike) const {
+std::optional<RayScene::Closest> RayScene::closestFacing(const V3f& position, const V3f& direction, float radius,
+                                                         const V3f& unlike) const {
     return search(position, radius, direction.normalized(), unlike);
 }
 

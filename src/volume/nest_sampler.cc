@@ -18,10 +18,9 @@ double floorOf(double x) {
 } // namespace
 
 NestSampler::NestSampler(const NestGrids& grids)
-    : space_(grids.space),
-      sides_(grids.sides.empty() ? grids.sides
-                                 : openvdb::CoordBBox(grids.sides.min() - grids.space.origin(),
-                                                      grids.sides.max() - grids.space.origin())),
+    : space_(grids.space), sides_(grids.sides.empty() ? grids.sides
+                                                      : openvdb::CoordBBox(grids.sides.min() - grids.space.origin(),
+                                                                           grids.sides.max() - grids.space.origin())),
       lattice_(leavesOf(std::as_const(grids.base->tree()))) {
     auto nest = grids.nest();
     interfaces_ = static_cast<int>(nest.size());
@@ -141,6 +140,26 @@ double NestSampler::valueAndGradient(int k, const NestCell& cell, Imath::V3d& gr
     gradient.y = (c01 - c00) + x * ((c11 - c10) - (c01 - c00));
     gradient.z = dz0 + x * (dz1 - dz0);
     return c0 + x * (c1 - c0);
+}
+
+double NestSampler::slope(int k, const Imath::V3d& point) const {
+    const Imath::V3i lower(int(floorOf(point.x)), int(floorOf(point.y)), int(floorOf(point.z)));
+    Imath::V3d gradient(0.0);
+    if (!sides_.empty() && !(sides_.isInside(openvdb::Coord(lower.x - 1, lower.y - 1, lower.z - 1)) &&
+                             sides_.isInside(openvdb::Coord(lower.x + 2, lower.y + 2, lower.z + 2)))) {
+        valueAndGradient(k, locate(point), gradient);
+        return gradient.length();
+    }
+    const Imath::V3d in = point - Imath::V3d(lower);
+    for (int c = 0; c < 8; ++c) {
+        const Imath::V3i step(c >> 2, c >> 1 & 1, c & 1);
+        double weight = 1.0;
+        for (int axis = 0; axis < 3; ++axis)
+            weight *= step[axis] ? in[axis] : 1.0 - in[axis];
+        if (weight > 0.0)
+            gradient += centralGradient(k, space_.index(lower + step)) * weight;
+    }
+    return gradient.length();
 }
 
 float NestSampler::voxel(int k, const openvdb::Coord& coord) const {

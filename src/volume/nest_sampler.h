@@ -41,7 +41,8 @@ class NestSampler {
     /// up to two voxels.
     NestCell locate(const Imath::V3d& point) const;
 
-    /// locate(), by a place that was found for another point: a cell is looked up where the point has left the last one.
+    /// locate(), by a place that was found for another point: a cell is looked up where the point has left the last
+    /// one.
     const NestCell& follow(const Imath::V3d& point, NestPlace& place) const;
 
     /// Where a voxel stands, in voxels.
@@ -54,6 +55,12 @@ class NestSampler {
     /// phi_k and its gradient within the cell (scene units per voxel).
     double valueAndGradient(int k, const NestCell& cell, Imath::V3d& gradient) const;
 
+    /// |grad phi_k| at a point, scene units per voxel: central differences at the lattice points, and between them what
+    /// lies between. The trilinear gradient leans where a voxel's cells end, which is where its closest point of an
+    /// interface lies: on a ball of r voxels by up to 0.4 / r, and on the whole to one side. At a region's sides, where
+    /// differences end, it serves all the same.
+    double slope(int k, const Imath::V3d& point) const;
+
     /// phi_k at an index.
     float voxel(int k, const openvdb::Coord& index) const;
 
@@ -65,8 +72,8 @@ class NestSampler {
 
     int interfaces_ = 0, reference_ = 0;
     IndexSpace space_;
-    openvdb::CoordBBox sides_; ///< of places; empty for a whole model
-    LeafLattice lattice_;      ///< -1 outside, -2 deep inside
+    openvdb::CoordBBox sides_;                       ///< of places; empty for a whole model
+    LeafLattice lattice_;                            ///< -1 outside, -2 deep inside
     std::vector<std::vector<const float*>> buffers_; ///< [k][leaf]
     std::vector<float> background_;
 };

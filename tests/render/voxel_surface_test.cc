@@ -77,9 +77,8 @@ struct VoxelSurfaceOfAGap : ::testing::Test {
         for (std::size_t t = 0; t < slabs.triangles.size(); ++t)
             slabs.triangleFaces.push_back(int(t / 2));
         piece = test::makePiece(std::move(slabs), test::voxelScale());
-        surface = voxelSurface(*piece->volume, piece->surface, [&](const SurfaceMesh& coarse) {
-            return flat = split(split(split(coarse)));
-        });
+        surface = voxelSurface(*piece->volume, piece->surface,
+                               [&](const SurfaceMesh& coarse) { return flat = split(split(split(coarse))); });
     }
 
     // A vertex in the gap, well within its rim.

@@ -70,35 +70,9 @@ struct ShownSurface {
     void takeVolume(const LayerVolume& volume, const Model& model, const View& view, const Turn& turn,
                     const Options& options) {
         reading = StackReading::vertices;
-<<<<<<< HEAD
-        shown = interfaceMesh(volume, volume.layerCount());
-        if (options.dice > 0.0) {
-            DiceOptions dice = dicingOf(view, options, volume.scale().voxelSize);
-            dice.longestEdge = std::numeric_limits<float>::infinity(); // the interface's own are a voxel long
-            dice.toPicture = turn;
-            shown = patina::diced(shown, view.camera, dice);
-            settleOnInterface(volume, volume.layerCount(), shown);
-        }
-        underVoxels.positions.resize(shown.positions.size());
-        underVoxels.normals.resize(shown.positions.size());
-        underVoxels.triangles = shown.triangles;
-        const std::vector<Imath::V3f> under = baseNormals(volume, shown.positions);
-        const RayScene rays(model.surface.positions, model.surface.triangles);
-        tbb::parallel_for(std::size_t(0), shown.positions.size(), [&](std::size_t v) {
-            const auto nearest = rays.closest(shown.positions[v]);
-            underVoxels.positions[v] = Imath::V3f(positionAt(model.surface, nearest->point));
-            underVoxels.normals[v] = Imath::V3f(normalAt(model.surface, nearest->point));
-            const Imath::V3f tilted = underVoxels.normals[v] + shown.normals[v] - under[v];
-            // Over a thin edge the model's normal may look the other way: the interface's own is right there.
-            if (under[v].length2() > 0.f && (underVoxels.normals[v] ^ under[v]) > 0.5f && tilted.length2() > 0.04f)
-                shown.normals[v] = tilted.normalized();
-        });
-=======
-        DiceOptions dice;
-        dice.pictureHeight = view.height;
-        dice.pixelsPerEdge = float(options.dice);
+        DiceOptions dice = dicingOf(view, options, volume.scale().voxelSize);
+        dice.longestEdge = std::numeric_limits<float>::infinity(); // the interface's own are a voxel long
         dice.toPicture = turn;
-        dice.margin = float(volume.scale().voxelSize);
         VoxelSurface voxels =
             options.dice > 0.0
                 ? voxelSurface(volume, model.surface,
@@ -106,7 +80,6 @@ struct ShownSurface {
                 : voxelSurface(volume, model.surface);
         shown = std::move(voxels.shown);
         underVoxels = std::move(voxels.under);
->>>>>>> 9ef5865 (Volume close-ups: vertices settle along their triangles' normals without turning any over, and each side of a gap reads its own half of the model)
     }
 
     const SurfaceMesh& base() const { return diced ? diced->surface : underVoxels; }
