@@ -200,12 +200,19 @@ void ClosingBalls::dropOpen(const openvdb::Coord& block, std::uint64_t* voxels) 
 
 bool ClosingBalls::touches(std::int32_t seed, std::int32_t& guess) const {
     const PointBlocks& points = surface_.seeds().points;
-    return touches(points.blocks[points.blockOf[seed]].block,
-                   {{points.x[seed], points.y[seed], points.z[seed]}, surface_.seeds().patches[seed].normal}, guess);
+    const Imath::V3f point(points.x[seed], points.y[seed], points.z[seed]);
+    const openvdb::Coord& block = points.blocks[points.blockOf[seed]].block;
+    return touches(block, surface_.seeds().pointUnder(block, point, seed), guess);
 }
 
-bool ClosingBalls::touches(const openvdb::Coord& block, const PatchPoint& point, std::int32_t& guess) const {
-    const Imath::V3f centre = point.foot + point.normal * radius_;
+bool ClosingBalls::touches(const openvdb::Coord& block, const TouchPoint& point, std::int32_t& guess) const {
+    for (int i = 0; i < point.count; ++i)
+        if (fits(block, point.foot + point.normals[i] * radius_, guess))
+            return true;
+    return false;
+}
+
+bool ClosingBalls::fits(const openvdb::Coord& block, const Imath::V3f& centre, std::int32_t& guess) const {
     if (fromOutside_) {
         const openvdb::Coord cell(8 * block.x() + int(std::floor(centre.x)), 8 * block.y() + int(std::floor(centre.y)),
                                   8 * block.z() + int(std::floor(centre.z)));

@@ -28,10 +28,10 @@ class ClosingBalls {
     /// \param start  the nearest of centres()
     float distance(const openvdb::Coord& block, const Imath::V3f& x, std::int32_t start) const;
 
-    /// Whether a ball touches the surface at a point of it (in voxels from a block's origin), D(p + r n) >= r -
-    /// contactTolerance: then the closing changes nothing there. False in doubt.
+    /// Whether a ball touches the surface at a point of it (in voxels from a block's origin): D(p + r n) >= r -
+    /// contactTolerance for one of its normals n. Then the closing changes nothing there. False in doubt.
     /// \param guess  a seed that may be in the way, as PatchContact::isClear() takes it
-    bool touches(const openvdb::Coord& block, const PatchPoint& point, std::int32_t& guess) const;
+    bool touches(const openvdb::Coord& block, const TouchPoint& point, std::int32_t& guess) const;
     bool touches(std::int32_t seed, std::int32_t& guess) const;
 
     /// Takes from `voxels` those of a block that are further from the surface than a ball's centre: open air.
@@ -53,6 +53,7 @@ class ClosingBalls {
 
     static constexpr std::int32_t blocked = -1, freeBlock = -2;
 
+    bool fits(const openvdb::Coord& block, const Imath::V3f& centre, std::int32_t& guess) const;
     void findShell(Progress& progress);
     void keepReachable();
     void placeCentres(Progress& progress);

@@ -17,7 +17,9 @@ struct SurfacePatch {
     Imath::V3f normal;          ///< outward, unit
     std::array<float, 6> shape; ///< S: curvatures (1/voxel) as a symmetric matrix xx xy xz yy yz zz; convex: positive
 
-    bool crease = false; ///< a piece of a sharp edge instead: S holds its direction (xx xy xz), zero in a corner
+    /// A piece of a sharp edge instead: S holds its direction (xx xy xz), zero in a corner, and the normal of one of its
+    /// two faces (yy yz zz); `normal` lies in the middle between both.
+    bool crease = false;
     bool convex = false; ///< of a crease: it stands out of the surface
     /// How far the patch reaches from its point, in voxels: a little further than half the way to the next; less where
     /// it is so curved that a parabola says little about it (edges).
@@ -38,15 +40,18 @@ struct SurfacePatch {
     /// The point of the patch that is closest to `w`; both are measured from the patch's own point.
     Imath::V3f foot(const Imath::V3f& w) const;
 
-    /// Outward unit normal at a foot.
+    /// Outward unit normal at a foot, not of a crease.
     Imath::V3f normalAt(const Imath::V3f& foot) const {
-        return crease ? normal : (normal + bend(foot - normal * foot.dot(normal))).normalized();
+        return (normal + bend(foot - normal * foot.dot(normal))).normalized();
     }
 };
 
-/// A point of a surface, in voxels, and the outward unit normal there.
-struct PatchPoint {
-    Imath::V3f foot, normal;
+/// A point of a surface, in voxels, and where to balls that touch it there may lie: along the outward unit normal; at a
+/// convex edge anywhere between the normals of its faces, of which the middle and both ends are tried.
+struct TouchPoint {
+    Imath::V3f foot;
+    std::array<Imath::V3f, 3> normals;
+    int count = 1; ///< of normals
 };
 
 /// The zero set of a level set: points on it, one for each cell it crosses, and the patch around each.
@@ -59,9 +64,17 @@ struct SurfaceSeeds {
         const Imath::V3f s = points.from(block, seed);
         return s + patches[seed].foot(x - s);
     }
-    PatchPoint pointUnder(const openvdb::Coord& block, const Imath::V3f& x, std::int32_t seed) const {
-        const Imath::V3f s = points.from(block, seed), foot = patches[seed].foot(x - s);
-        return {s + foot, patches[seed].normalAt(foot)};
+    TouchPoint pointUnder(const openvdb::Coord& block, const Imath::V3f& x, std::int32_t seed) const {
+        const SurfacePatch& patch = patches[seed];
+        const Imath::V3f s = points.from(block, seed), foot = patch.foot(x - s);
+        TouchPoint point{s + foot, {patch.crease ? patch.normal : patch.normalAt(foot)}};
+        if (patch.crease && patch.convex) {
+            const Imath::V3f face(patch.shape[3], patch.shape[4], patch.shape[5]);
+            point.normals[1] = face;
+            point.normals[2] = patch.normal * (2.f * face.dot(patch.normal)) - face;
+            point.count = face.dot(face) > 0.f ? 3 : 1;
+        }
+        return point;
     }
 };
 

@@ -51,7 +51,7 @@ TEST(Distance, IsGoodToAFewHundredthsAroundSharpEdges) {
         const auto truth = [turn](const Imath::V3d& p) {
             return test::boxDistance(test::turned(p + Imath::V3d(0.31, 0.17, 0.42), turn), {20.0, 15.0, 10.0});
         };
-        EXPECT_LT(errorOf(test::volumeOf(truth, 42, 5.0, 12.0), truth).rmsOutside, 0.05) << turn;
+        EXPECT_LT(errorOf(test::volumeOf(truth, 42, 5.0, 12.0), truth).rmsOutside, 0.02) << turn;
     }
 }
 

@@ -71,11 +71,15 @@ std::vector<float> accessibleRadii(const LayerVolume& volume, const SurfaceVoxel
             const std::int32_t seed = near.point[numberOf(surface.voxels[i])];
             if (seed < 0)
                 continue; // no surface at all
-            const PatchPoint under = seeds.pointUnder(block, V3f(surface.voxels[i]) - origin, seed);
+            const TouchPoint under = seeds.pointUnder(block, V3f(surface.voxels[i]) - origin, seed);
             const V3f p = origin + under.foot;
-            const TangentSpheres::Touch touch = spheres.largest(p, under.normal, limit, guess);
-            guess = touch.seed;
-            radii[i] = passages ? fromOutside(*passages, p, under.normal, touch.radius) : touch.radius;
+            radii[i] = 0.f;
+            for (int n = 0; n < under.count && radii[i] < limit; ++n) {
+                const TangentSpheres::Touch touch = spheres.largest(p, under.normals[n], limit, guess);
+                guess = touch.seed;
+                radii[i] = std::max(
+                    radii[i], passages ? fromOutside(*passages, p, under.normals[n], touch.radius) : touch.radius);
+            }
         }
     });
     progress.checkpoint();

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace patina {
@@ -17,7 +18,8 @@ class ImageChannels {
     /// Why the file cannot be read as an image; empty where it can.
     const std::string& failure() const { return failure_; }
     const std::vector<std::string>& names() const { return names_; }
-    /// \param channel  a channel's name ("R", "Y", …) or its number from 0 \return its number; none where there is none
+    /// \param channel  a channel's name ("R", "Y", …) or its number from 0
+    /// \return its number, where there is one
     std::optional<int> find(const std::string& channel) const;
 
   private:

@@ -67,6 +67,23 @@ inline std::unique_ptr<LayerVolume> volumeOf(const SignedDistance& distance, int
     return std::make_unique<LayerVolume>(scale, "copper", std::move(grids));
 }
 
+/// The point of such a surface next to x, by steps along the gradient: the closest one where the distance is exact.
+inline Imath::V3d closestPoint(const SignedDistance& distance, const Imath::V3d& x) {
+    constexpr double h = 1e-5;
+    Imath::V3d p = x;
+    for (int step = 0; step < 30 && std::abs(distance(p)) > 1e-9; ++step) {
+        Imath::V3d gradient;
+        for (int axis = 0; axis < 3; ++axis) {
+            Imath::V3d along(0.0);
+            along[axis] = h;
+            gradient[axis] = (distance(p + along) - distance(p - along)) / (2.0 * h);
+        }
+        if (gradient.length2() > 1e-9)
+            p -= gradient * (distance(p) / gradient.length2());
+    }
+    return p;
+}
+
 /// A half-space z < 0 with a slot of width w along y, d deep.
 inline SignedDistance slot(double w, double d) {
     return [w, d](const Imath::V3d& p) { return std::max(p.z, -std::max(std::abs(p.x) - 0.5 * w, -d - p.z)); };
