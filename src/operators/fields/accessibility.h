@@ -16,6 +16,8 @@ namespace patina {
 /// | gap of width w                                     | w / 2                                        |
 /// | V-groove of full angle 2φ, at s from its apex      | s tan φ                                      |
 ///
+/// On a sharp convex edge the sphere may lean between the normals of the two faces.
+///
 /// \param surface  findSurfaceVoxels() of the same volume and layer
 /// \param layer    volume.layerCount(): the surface as it is now, layers included
 /// \param limitVoxels  largest radius of interest, > 0
