@@ -150,14 +150,34 @@ double NestSampler::slope(int k, const Imath::V3d& point) const {
         valueAndGradient(k, locate(point), gradient);
         return gradient.length();
     }
-    const Imath::V3d in = point - Imath::V3d(lower);
+    // Four lattice points along each axis, which lie in one leaf or two.
+    const openvdb::Coord first = space_.index(lower - Imath::V3i(1)), leaf = first >> 3;
+    const Imath::V3i start(first.x() & 7, first.y() & 7, first.z() & 7);
+    const float* values[8] = {};
+    double outside[8] = {};
     for (int c = 0; c < 8; ++c) {
         const Imath::V3i step(c >> 2, c >> 1 & 1, c & 1);
-        double weight = 1.0;
-        for (int axis = 0; axis < 3; ++axis)
-            weight *= step[axis] ? in[axis] : 1.0 - in[axis];
-        if (weight > 0.0)
-            gradient += centralGradient(k, space_.index(lower + step)) * weight;
+        if ((step.x && start.x < 5) || (step.y && start.y < 5) || (step.z && start.z < 5))
+            continue; // not reached
+        const std::int32_t at = lattice_.at(leaf.x() + step.x, leaf.y() + step.y, leaf.z() + step.z);
+        if (at >= 0)
+            values[c] = buffers_[k][at];
+        else
+            outside[c] = at == -1 ? background_[k] : -background_[k];
+    }
+    const auto value = [&](int x, int y, int z) -> double {
+        x += start.x, y += start.y, z += start.z;
+        const int c = (x >> 3) << 2 | (y >> 3) << 1 | z >> 3;
+        return values[c] ? values[c][(x & 7) << 6 | (y & 7) << 3 | (z & 7)] : outside[c];
+    };
+    const Imath::V3d in = point - Imath::V3d(lower);
+    for (int c = 0; c < 8; ++c) {
+        const int x = 1 + (c >> 2), y = 1 + (c >> 1 & 1), z = 1 + (c & 1);
+        const double weight =
+            0.5 * (x == 1 ? 1.0 - in.x : in.x) * (y == 1 ? 1.0 - in.y : in.y) * (z == 1 ? 1.0 - in.z : in.z);
+        gradient +=
+            weight * Imath::V3d(value(x + 1, y, z) - value(x - 1, y, z), value(x, y + 1, z) - value(x, y - 1, z),
+                                value(x, y, z + 1) - value(x, y, z - 1));
     }
     return gradient.length();
 }
