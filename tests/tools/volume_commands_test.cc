@@ -241,7 +241,7 @@ TEST_F(VolumeCommands, RenderSaysWhatItCannotMakeAPictureOf) {
     EXPECT_EQ(run({"render", "ball/ball.vdb", "--samples", "0"}).exitCode, 2);
     // Whatever the volume is: its size is known to be too large before anything is read.
     folder.file("broken.vdb", "this is no volume");
-    const Outcome large = run({"render", "broken.vdb", "--picture", "16384", "-o", "no"});
+    const Outcome large = run({"render", "broken.vdb", "--picture", "16384", "--exr", "-o", "no"});
     EXPECT_EQ(large.exitCode, 5) << large.err;
     EXPECT_THAT(large.err, HasSubstr("more than the 4 allowed"));
     EXPECT_EQ(run({"render", "broken.vdb", "--picture", "64", "-o", "no"}).exitCode, 1);

@@ -29,7 +29,7 @@ constexpr double creaseRadius = 0.02;
 
 constexpr const char* originKey = "patina_field_origin";
 /// To be raised with every change of what fields are: those of older files are then computed again.
-constexpr const char* fieldsVersion = "fields 3";
+constexpr const char* fieldsVersion = "fields 4";
 
 std::string lengthForName(double um) {
     if (um >= 1e6)
