@@ -9,8 +9,8 @@ cd "$(dirname "$0")/.."
 bash tools/setup.sh --thread-sanitizer
 
 cmake --preset sanitize -DPATINA_BUILD_TESTS=ON -DPATINA_WARNINGS_AS_ERRORS=ON
-cmake --build --preset sanitize -j "$(nproc)" --target base_tests surface_tests optics_tests growth_tests
-for room in base surface optics growth; do
+cmake --build --preset sanitize -j "$(nproc)" --target base_tests surface_tests optics_tests volume_tests fields_tests growth_tests
+for room in base surface optics volume fields growth; do
   "build/sanitize/tests/${room}_tests" --gtest_brief=1
 done
 
