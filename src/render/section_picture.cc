@@ -127,8 +127,10 @@ SectionPicture drawSection(const LayerVolume& volume, const std::vector<SectionM
         picture.stretch = scale.exaggeration;
     }
     const double unitsPerRow = unitsPerPixel / stretch;
-    const double floorRow =
-        cutHeight * (1.0 - std::clamp(deepest / unitsPerRow / cutHeight + (deepest > 0.0 ? 0.1 : 0.0), 0.25, 0.55));
+    // Below pits there is metal, where what lies above leaves the room: a fit gives both together 0.7 of the height.
+    const double below = deepest / unitsPerRow / cutHeight + (deepest > 0.0 ? 0.1 : 0.0);
+    const double room = std::max(0.55, 0.9 - highest / unitsPerRow / cutHeight);
+    const double floorRow = cutHeight * (1.0 - std::clamp(below, 0.25, room));
     picture.rowsPerUm = scale.exaggeration / (scale.metresPerUnit * 1e6) / unitsPerRow;
     picture.metalRow = top + floorRow;
     tbb::parallel_for(0, cutWidth, [&](int x) {

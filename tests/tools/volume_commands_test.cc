@@ -241,9 +241,17 @@ TEST_F(VolumeCommands, RenderSaysWhatItCannotMakeAPictureOf) {
     EXPECT_EQ(run({"render", "ball/ball.vdb", "--samples", "0"}).exitCode, 2);
     // Whatever the volume is: its size is known to be too large before anything is read.
     folder.file("broken.vdb", "this is no volume");
-    const Outcome large = run({"render", "broken.vdb", "--picture", "16384", "--exr", "-o", "no"});
-    EXPECT_EQ(large.exitCode, 5) << large.err;
-    EXPECT_THAT(large.err, HasSubstr("more than the 4 allowed"));
+    for (const Arguments& more : {Arguments{"--exr"}, Arguments{"--closeup", "0,0,0,1"}}) {
+        Arguments words{"render", "broken.vdb", "--picture", "16384", "-o", "no"};
+        words.insert(words.end(), more.begin(), more.end());
+        const Outcome large = run(words);
+        EXPECT_EQ(large.exitCode, 5) << more[0] << ": " << large.err;
+        EXPECT_THAT(large.err, HasSubstr("more than the 4 allowed"));
+    }
+    // As wide as it might be this one would fit: it is refused when the volume has said how wide it is.
+    const Outcome whole = tried({"--picture", "16384"});
+    EXPECT_EQ(whole.exitCode, 5) << whole.err;
+    EXPECT_THAT(whole.err, HasSubstr("more than the 4 allowed"));
     EXPECT_EQ(run({"render", "broken.vdb", "--picture", "64", "-o", "no"}).exitCode, 1);
     const Outcome inside = tried({"--picture", "32", "--camera", "0,0,0.01"});
     EXPECT_EQ(inside.exitCode, 1);
